@@ -1,0 +1,2 @@
+//! Nephroid: real-time caustics methods on one set of scenes, lights and units; what each costs, and how wrong it is.
+
