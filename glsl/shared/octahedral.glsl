@@ -1,0 +1,26 @@
+// Unit vectors in two numbers, each in [-1, 1].
+// Based on: Cigolle et al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 3(2), 2014,
+// listing 1.
+#ifndef OCTAHEDRAL_GLSL
+#define OCTAHEDRAL_GLSL
+
+vec2 octahedral_fold(vec2 p) {
+    return (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+}
+
+// The zero vector becomes (0, 0), which stands for +z.
+vec2 octahedral_encode(vec3 v) {
+    float sum = abs(v.x) + abs(v.y) + abs(v.z);
+    if (!(sum > 0.0)) return vec2(0.0);
+    vec2 p = v.xy / sum;
+    return clamp(v.z >= 0.0 ? p : octahedral_fold(p), -1.0, 1.0);
+}
+
+vec3 octahedral_decode(vec2 e) {
+    vec2 p = clamp(e, -1.0, 1.0);
+    float z = 1.0 - abs(p.x) - abs(p.y);
+    vec3 v = vec3(z >= 0.0 ? p : octahedral_fold(p), z);
+    return v / sqrt(dot(v, v)); // the octahedron is nowhere nearer to its centre than 1/sqrt(3)
+}
+
+#endif

@@ -1,0 +1,72 @@
+// The scene as the shaders read it: six buffers in scalar layout, filled by `passes/accel`.
+#ifndef SCENE_GLSL
+#define SCENE_GLSL
+
+// A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
+// primitives from `first`. All indices are absolute. The tree over the instances has its root at 0.
+struct Node {
+    vec3 lo;
+    uint count;
+    vec3 hi;
+    uint first;
+};
+
+struct Triangle {
+    vec3 a, b, c;
+};
+
+struct TriangleNormals {
+    vec3 a, b, c;
+};
+
+// A canonical shape under an affine map; rows of 3x4 matrices.
+struct Instance {
+    vec4 to_object[3];
+    vec4 to_world[3];
+    uint kind;
+    uint material;
+    uint object; // index of the object in the scene
+    uint root;   // of a mesh, in scene_nodes
+};
+
+const uint SHAPE_SPHERE = 0u; // unit sphere at the origin
+const uint SHAPE_QUAD = 1u;   // [-1, 1]^2 in the xy-plane, normal +z
+const uint SHAPE_MESH = 2u;
+
+struct Material {
+    uint kind;
+    float ior;
+    vec3 colour;     // albedo, or a mirror's reflectance
+    vec3 absorption; // 1/m
+};
+
+const uint MATERIAL_DIFFUSE = 0u;
+const uint MATERIAL_DIELECTRIC = 1u;
+const uint MATERIAL_MIRROR = 2u;
+
+struct Light {
+    uint kind;
+    vec3 vector; // directional: unit direction of travel; point: position
+    vec3 power;  // directional: irradiance of a plane facing it, W/m^2; point: intensity, W/sr
+};
+
+const uint LIGHT_DIRECTIONAL = 0u;
+const uint LIGHT_POINT = 1u;
+
+layout(set = 0, binding = 0, scalar) readonly buffer SceneNodes { Node data[]; } scene_nodes;
+layout(set = 0, binding = 1, scalar) readonly buffer SceneTriangles { Triangle data[]; } scene_triangles;
+layout(set = 0, binding = 2, scalar) readonly buffer SceneNormals { TriangleNormals data[]; } scene_normals;
+layout(set = 0, binding = 3, scalar) readonly buffer SceneInstances { Instance data[]; } scene_instances;
+layout(set = 0, binding = 4, scalar) readonly buffer SceneMaterials { Material data[]; } scene_materials;
+layout(set = 0, binding = 5, scalar) readonly buffer SceneLights { Light data[]; } scene_lights;
+
+// Classes of objects a ray asks for.
+const uint MASK_DIFFUSE = 1u;
+const uint MASK_SPECULAR = 2u;
+const uint MASK_ALL = 3u;
+
+uint material_mask(uint material) {
+    return scene_materials.data[material].kind == MATERIAL_DIFFUSE ? MASK_DIFFUSE : MASK_SPECULAR;
+}
+
+#endif

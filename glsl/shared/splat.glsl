@@ -1,0 +1,42 @@
+// A Gaussian splat of fixed size, separable, its weights summing to one over the texels it covers.
+//
+// A point of size D centred at p (in texels; texel k spans k..k+1) covers the texels whose centres lie in
+// [p - D/2, p + D/2). Along each axis a texel's share is splat_weight(centre, p, D) / splat_norm(p, D, side):
+// what a border cuts off is shared out among the rest.
+#ifndef SPLAT_GLSL
+#define SPLAT_GLSL
+
+// The rasteriser keeps point centres to 1/256 texel (subPixelPrecisionBits = 8). A centre already on that grid is
+// covered as this file says; any other could gain or lose a row at the window's edge.
+const float SPLAT_GRID = 256.0;
+const float SPLAT_MAX_DIAMETER = 255.0;
+
+float splat_snap(float p) {
+    return floor(p * SPLAT_GRID + 0.5) / SPLAT_GRID;
+}
+
+float splat_diameter(float diameter) {
+    return clamp(diameter, 1.0, SPLAT_MAX_DIAMETER);
+}
+
+// Not normalised: one at the centre. Standard deviation a quarter of the diameter.
+float splat_weight(float texel_centre, float p, float diameter) {
+    float x = (texel_centre - p) * 4.0 / splat_diameter(diameter);
+    return exp(-0.5 * x * x);
+}
+
+// Sum of the weights over the texels of one axis that the window covers inside a map of `side` texels; zero if
+// there are none.
+float splat_norm(float p, float diameter, int side) {
+    float d = splat_diameter(diameter);
+    if (!(p > -d && p < float(side) + d)) return 0.0; // NaN and what no int can hold end here
+    // floor(x) < p <= k + 1/2 in exact arithmetic; p and D/2 are dyadic, so nothing is rounded for centres on the
+    // grid.
+    int first = max(int(ceil(p - 0.5 * d - 0.5)), 0);
+    int last = min(int(ceil(p + 0.5 * d - 0.5)), side);
+    float sum = 0.0;
+    for (int k = first; k < last; k++) sum += splat_weight(float(k) + 0.5, p, d);
+    return sum;
+}
+
+#endif

@@ -1,0 +1,103 @@
+// What a ray finds where it hits.
+#ifndef SURFACE_GLSL
+#define SURFACE_GLSL
+
+#include "shared/bvh.glsl"
+#include "shared/optics.glsl"
+
+struct Surface {
+    vec3 p;   // on the primitive, not on the ray: its error does not grow with the ray's length
+    vec3 ng;  // unit geometric normal of the outside, whichever side the ray came from
+    vec3 ns;  // unit interpolated normal, on ng's side
+    // Quad: in [-1, 1]^2; sphere: longitude about +y from +z, latitude (radians); mesh: barycentric weights of b, c.
+    vec2 uv;
+    uint object;
+    uint material;
+    float eps; // how far along ng a ray must start to be off the surface, metres
+};
+
+// Bound on the rounding of one way object -> world -> object and of an intersection, in units of the coordinates
+// that take part: 16 unit roundoffs of 2^-24 (each map is 4 products and their sums on both sides, stored entries
+// included).
+const float SURFACE_ROUNDING = 9.5367432e-7;
+
+vec3 abs_map(vec4 rows[3], vec3 p) {
+    return vec3(dot(abs(rows[0]), vec4(p, 1.0)), dot(abs(rows[1]), vec4(p, 1.0)), dot(abs(rows[2]), vec4(p, 1.0)));
+}
+
+// Based on: Wald and Parker, self-intersection avoidance by propagated bounds (NVIDIA, 2023): the errors of the
+// point, of the next ray's origin in object space and of the intersection there, as far as they lie along the
+// normal.
+// All terms grow with the scene, so scenes of any scale are treated alike.
+float surface_rounding(Instance shape, vec3 p, vec3 ng, vec3 local, float intersection) {
+    vec3 normal_of_local = abs(vec3(dot(ng, vec3(shape.to_world[0].x, shape.to_world[1].x, shape.to_world[2].x)),
+                                    dot(ng, vec3(shape.to_world[0].y, shape.to_world[1].y, shape.to_world[2].y)),
+                                    dot(ng, vec3(shape.to_world[0].z, shape.to_world[1].z, shape.to_world[2].z))));
+    float of_point = dot(abs(ng), abs_map(shape.to_world, abs(local)));
+    float of_origin = dot(normal_of_local, abs_map(shape.to_object, abs(p)) + vec3(intersection));
+    return SURFACE_ROUNDING * (of_point + of_origin);
+}
+
+Surface surface_of_sphere(Instance shape, vec3 local) {
+    Surface s;
+    vec3 n = safe_normalize(local, vec3(0.0, 1.0, 0.0));
+    s.p = map_point(shape.to_world, n);
+    s.ng = safe_normalize(map_normal(shape.to_object, n), vec3(0.0, 1.0, 0.0));
+    s.ns = s.ng;
+    float around = sqrt(n.x * n.x + n.z * n.z);
+    s.uv = vec2(around > 0.0 ? atan(n.x, n.z) : 0.0, atan(n.y, around));
+    s.eps = surface_rounding(shape, s.p, s.ng, n, 1.0);
+    return s;
+}
+
+Surface surface_of_quad(Instance shape, vec2 uv) {
+    Surface s;
+    vec3 local = vec3(clamp(uv, -1.0, 1.0), 0.0);
+    s.p = map_point(shape.to_world, local);
+    s.ng = safe_normalize(map_normal(shape.to_object, vec3(0.0, 0.0, 1.0)), vec3(0.0, 1.0, 0.0));
+    s.ns = s.ng;
+    s.uv = local.xy;
+    s.eps = surface_rounding(shape, s.p, s.ng, local, 0.0);
+    return s;
+}
+
+Surface surface_of_triangle(Instance shape, uint primitive, vec2 uv) {
+    Surface s;
+    Triangle at = scene_triangles.data[primitive];
+    TriangleNormals normals = scene_normals.data[primitive];
+    vec3 ab = at.b - at.a, ac = at.c - at.a;
+    vec3 local = at.a + uv.x * ab + uv.y * ac;
+    float extent = max(max(abs(ab.x), abs(ac.x)), max(max(abs(ab.y), abs(ac.y)), max(abs(ab.z), abs(ac.z))));
+    s.p = map_point(shape.to_world, local);
+    vec3 normal = safe_normalize(cross(ab, ac), vec3(0.0, 1.0, 0.0));
+    s.ng = safe_normalize(map_normal(shape.to_object, normal), vec3(0.0, 1.0, 0.0));
+    vec3 bent = (1.0 - uv.x - uv.y) * normals.a + uv.x * normals.b + uv.y * normals.c;
+    s.ns = safe_normalize(map_normal(shape.to_object, bent), s.ng);
+    if (dot(s.ns, s.ng) < 0.0) s.ns = -s.ns;
+    s.uv = uv;
+    s.eps = surface_rounding(shape, s.p, s.ng, abs(at.a) + abs(ab) + abs(ac), extent);
+    return s;
+}
+
+// Of a hit that `trace` found for this ray.
+Surface surface_at(vec3 o, vec3 d, Hit hit) {
+    Instance shape = scene_instances.data[hit.instance];
+    Surface s;
+    if (shape.kind == SHAPE_SPHERE) {
+        s = surface_of_sphere(shape, map_point(shape.to_object, o) + hit.t * map_vector(shape.to_object, d));
+    } else if (shape.kind == SHAPE_QUAD) {
+        s = surface_of_quad(shape, hit.uv);
+    } else {
+        s = surface_of_triangle(shape, hit.primitive, hit.uv);
+    }
+    s.object = shape.object;
+    s.material = shape.material;
+    return s;
+}
+
+// Where a ray that goes on along d starts: off the surface, on the side it goes to.
+vec3 leave(Surface s, vec3 d) {
+    return s.p + (dot(d, s.ng) < 0.0 ? -s.eps : s.eps) * s.ng;
+}
+
+#endif
