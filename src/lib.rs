@@ -2,5 +2,7 @@
 
 pub mod gpu;
 pub mod optics;
+pub mod settings;
 pub mod stats;
 pub mod store;
+pub mod view;
