@@ -2,3 +2,4 @@
 
 pub mod optics;
 pub mod stats;
+pub mod truth;
