@@ -3,3 +3,4 @@
 pub mod optics;
 pub mod stats;
 pub mod truth;
+pub mod whole;
