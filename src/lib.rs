@@ -1,5 +1,6 @@
 //! Nephroid: real-time caustics methods on one set of scenes, lights and units; what each costs, and how wrong it is.
 
+pub mod image;
 pub mod optics;
 pub mod stats;
 pub mod truth;
