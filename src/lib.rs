@@ -1,2 +1,4 @@
 //! Nephroid: real-time caustics methods on one set of scenes, lights and units; what each costs, and how wrong it is.
 
+pub mod optics;
+pub mod stats;

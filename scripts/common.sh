@@ -1,0 +1,43 @@
+# Sourced by the scripts beside it: the project's root as working folder, the Rust it names, a way to show what runs.
+# shellcheck shell=bash
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+rust_wanted=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+
+# Is version $1 at least version $2?
+at_least() { [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]; }
+
+# Version of the rustc or cargo ($1) that a plain command would run; nothing where there is none.
+version_of() { "$1" --version 2>/dev/null | cut -d ' ' -f 2 || true; }
+
+rust_is_new_enough() {
+  local tool found
+  for tool in rustc cargo; do
+    found=$(version_of "$tool")
+    [ -n "$found" ] && at_least "$found" "$rust_wanted" || return 1
+  done
+}
+
+# A Rust that rustup installed a moment ago is not on the caller's PATH yet.
+use_rustup() {
+  local bin=${CARGO_HOME:-$HOME/.cargo}/bin
+  if [ -x "$bin/cargo" ] && ! rust_is_new_enough; then export PATH="$bin:$PATH"; fi
+}
+
+# .cargo/config.toml names the x86-64 folder of Debian's libraries; elsewhere the folder follows the machine.
+name_shaderc() {
+  local dir
+  dir=/usr/lib/$(uname -m)-linux-gnu
+  if [ -z "${SHADERC_LIB_DIR:-}" ] && [ "$(uname -m)" != x86_64 ] && [ -d "$dir" ]; then export SHADERC_LIB_DIR=$dir; fi
+}
+
+# Shows a command, runs it, says how long it took. Its status stands.
+run() {
+  local start=$SECONDS status=0
+  printf '\n+ %s\n' "$*" >&2
+  "$@" || status=$?
+  if [ "$status" -ne 0 ]; then printf 'FAILED (exit %s): %s\n' "$status" "$*" >&2; else printf '  %s s\n' $((SECONDS - start)) >&2; fi
+  return "$status"
+}
+
+use_rustup
+name_shaderc
