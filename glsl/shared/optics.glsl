@@ -59,9 +59,10 @@ vec3 reflect_ray(vec3 d, vec3 n) {
     return safe_normalize(d - 2.0 * dot(d, n) * n, d);
 }
 
-// Transmittance of `len` metres of a medium that absorbs `absorption` per metre (Beer and Lambert).
+// Transmittance of `len` metres of a medium that absorbs `absorption` per metre (Beer and Lambert). What absorbs
+// nothing lets all pass at any length.
 vec3 absorb(vec3 absorption, float len) {
-    return exp(-absorption * max(len, 0.0));
+    return mix(exp(-absorption * max(len, 0.0)), vec3(1.0), equal(absorption, vec3(0.0)));
 }
 
 #endif

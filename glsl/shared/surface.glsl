@@ -25,9 +25,8 @@ vec3 abs_map(vec4 rows[3], vec3 p) {
     return vec3(dot(abs(rows[0]), vec4(p, 1.0)), dot(abs(rows[1]), vec4(p, 1.0)), dot(abs(rows[2]), vec4(p, 1.0)));
 }
 
-// Based on: Wald and Parker, self-intersection avoidance by propagated bounds (NVIDIA, 2023): the errors of the
-// point, of the next ray's origin in object space and of the intersection there, as far as they lie along the
-// normal.
+// After: Solving Self-Intersection Artifacts in DirectX Raytracing (NVIDIA developer blog, 2023): the errors of the
+// point, of the next ray's origin in object space and of the intersection there, as far as they lie along the normal.
 // All terms grow with the scene, so scenes of any scale are treated alike.
 float surface_rounding(Instance shape, vec3 p, vec3 ng, vec3 local, float intersection) {
     vec3 normal_of_local = abs(vec3(dot(ng, vec3(shape.to_world[0].x, shape.to_world[1].x, shape.to_world[2].x)),

@@ -1,0 +1,250 @@
+//! The scene as arrays for `glsl/shared/scene.glsl` and `bvh.glsl`: canonical shapes under affine instances, one tree
+//! for each distinct mesh, one over the instances.
+//!
+//! Trees: binary, by obvhs 0.4 (parallel locally-ordered clustering, Meister and Bittner 2018, then reinsertion).
+//! Shapes stay what they are: a sphere is a unit sphere under its instance, never triangles.
+use std::{collections::HashMap, sync::Arc};
+
+use glam::{DAffine3, DMat3, DVec3, Vec3};
+use obvhs::aabb::Aabb;
+
+use crate::scene::{LightKind, Material as SceneMaterial, MaterialKind, Mesh, Object, Scene, Shape};
+
+mod error;
+mod layout;
+mod tree;
+
+pub use error::AccelError;
+pub use layout::*;
+use tree::{Tree, roomy_box};
+
+/// Levels of both trees together that the shaders' stack holds (`TRAVERSAL_STACK` in `bvh.glsl`).
+pub const TRAVERSAL_STACK: usize = 64;
+/// Node references keep 28 bits for an index (`node_reference` in `bvh.glsl`).
+const LARGEST_INDEX: usize = (1 << 28) - 1;
+/// Lengths, factors and their inverses up to here can be squared, and boxes' areas summed, within float32.
+const LARGEST: f64 = 1e15;
+
+/// What the shaders read; no array is empty, since no Vulkan buffer may be.
+#[derive(Clone, Debug)]
+pub struct SceneArrays {
+    /// The tree over the instances (root 0), then one tree for each distinct mesh.
+    pub nodes: Vec<Node>,
+    /// Object units, in the order of the leaves.
+    pub triangles: Vec<Triangle>,
+    pub normals: Vec<TriangleNormals>,
+    /// In the order of the leaves; an object without triangles has none.
+    pub instances: Vec<Instance>,
+    /// As [`Scene::materials`].
+    pub materials: Vec<Material>,
+    /// As [`Scene::lights`].
+    pub lights: Vec<Light>,
+}
+
+impl SceneArrays {
+    /// Builds all trees; the same scene gives the same bytes.
+    pub fn build(scene: &Scene) -> Result<SceneArrays, AccelError> {
+        let mut meshes = Meshes::default();
+        let placed: Vec<Placed> =
+            scene.objects.iter().enumerate().filter_map(|(i, o)| place(i, o, &mut meshes).transpose()).collect::<Result<_, _>>()?;
+        let boxes: Vec<Aabb> = placed.iter().map(|p| p.bounds).collect();
+        let top = if boxes.is_empty() { nowhere() } else { Tree::over(&boxes) };
+        check_depth(scene, &placed, &meshes, top.depth())?;
+        let base = top.nodes.len() as u32;
+        let instance = |&i: &u32| {
+            let p = &placed[i as usize];
+            Instance { root: p.mesh.map_or(0, |m| base + meshes.all[m].root), ..p.instance }
+        };
+        let arrays = SceneArrays {
+            instances: filled(top.order.iter().filter(|&&i| (i as usize) < placed.len()).map(instance).collect()),
+            nodes: top.moved(0, 0).chain(meshes.all.iter().flat_map(|m| m.tree.moved(base + m.root, m.triangle))).collect(),
+            triangles: filled(meshes.triangles),
+            normals: filled(meshes.normals),
+            materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
+            lights: filled(scene.lights.iter().map(light).collect::<Result<_, _>>()?),
+        };
+        check_count("nodes", arrays.nodes.len())?;
+        check_count("triangles", arrays.triangles.len())?;
+        Ok(arrays)
+    }
+}
+
+/// An array with at least one element.
+fn filled<T: Default>(mut array: Vec<T>) -> Vec<T> {
+    if array.is_empty() {
+        array.push(T::default());
+    }
+    array
+}
+
+/// A tree that no ray enters: one leaf beyond every t; the instance it names is filler.
+fn nowhere() -> Tree {
+    Tree { nodes: vec![Node { lo: [f32::MAX; 3], count: 1, hi: [f32::MAX; 3], first: 0 }], order: vec![] }
+}
+
+fn check_count(what: &'static str, count: usize) -> Result<(), AccelError> {
+    if count > LARGEST_INDEX { Err(AccelError::Count { what, count, limit: LARGEST_INDEX }) } else { Ok(()) }
+}
+
+fn check_depth(scene: &Scene, placed: &[Placed], meshes: &Meshes, top: usize) -> Result<(), AccelError> {
+    for p in placed {
+        let depth = top + p.mesh.map_or(0, |m| meshes.all[m].depth);
+        if depth > TRAVERSAL_STACK {
+            let object = &scene.objects[p.instance.object as usize];
+            let file = if let Shape::Mesh { mesh, .. } = &object.shape { mesh.file.clone() } else { String::new() };
+            return Err(AccelError::Depth { name: object.name.clone(), file, depth, limit: TRAVERSAL_STACK });
+        }
+    }
+    Ok(())
+}
+
+/// The distinct meshes met so far, their trees and their triangles.
+#[derive(Default)]
+struct Meshes {
+    all: Vec<BuiltMesh>,
+    /// By address: objects share a mesh through one `Arc`.
+    known: HashMap<*const Mesh, usize>,
+    nodes: u32,
+    triangles: Vec<Triangle>,
+    normals: Vec<TriangleNormals>,
+}
+
+struct BuiltMesh {
+    tree: Tree,
+    depth: usize,
+    /// Counted from the first node of the first mesh.
+    root: u32,
+    /// First of its triangles.
+    triangle: u32,
+}
+
+impl Meshes {
+    /// Index of the mesh, built at its first use; it has at least one triangle.
+    fn add(&mut self, name: &str, mesh: &Arc<Mesh>) -> Result<usize, AccelError> {
+        if let Some(&known) = self.known.get(&Arc::as_ptr(mesh)) {
+            return Ok(known);
+        }
+        check_count("triangles", self.triangles.len() + mesh.triangles.len())?;
+        let corners = (0..mesh.triangles.len()).map(|t| triangle(name, mesh, t)).collect::<Result<Vec<_>, _>>()?;
+        let boxes: Vec<Aabb> =
+            corners.iter().map(|t| Aabb::from_points(&[t.a.into(), t.b.into(), t.c.into()])).collect();
+        let tree = Tree::over(&boxes);
+        let built = BuiltMesh { depth: tree.depth(), root: self.nodes, triangle: self.triangles.len() as u32, tree };
+        self.nodes += built.tree.nodes.len() as u32;
+        self.triangles.extend(built.tree.order.iter().map(|&t| corners[t as usize]));
+        self.normals.extend(built.tree.order.iter().map(|&t| corner_normals(mesh, t as usize)));
+        self.all.push(built);
+        self.known.insert(Arc::as_ptr(mesh), self.all.len() - 1);
+        Ok(self.all.len() - 1)
+    }
+}
+
+fn triangle(name: &str, mesh: &Mesh, index: usize) -> Result<Triangle, AccelError> {
+    let missing = || AccelError::Vertex { name: name.to_owned(), file: mesh.file.clone(), triangle: index };
+    let corner = |k: usize| -> Result<[f32; 3], AccelError> {
+        let position = mesh.positions.get(mesh.triangles[index][k] as usize).ok_or_else(missing)?;
+        vector(name, "a vertex", position.as_dvec3())
+    };
+    Ok(Triangle { a: corner(0)?, b: corner(1)?, c: corner(2)? })
+}
+
+/// A vertex without a normal gets zero, which the shaders answer with the geometric normal.
+fn corner_normals(mesh: &Mesh, index: usize) -> TriangleNormals {
+    let at = |k: usize| mesh.normals.get(mesh.triangles[index][k] as usize).copied().unwrap_or(Vec3::ZERO).to_array();
+    TriangleNormals { a: at(0), b: at(1), c: at(2) }
+}
+
+/// An instance before its place in the order is known.
+struct Placed {
+    instance: Instance,
+    mesh: Option<usize>,
+    bounds: Aabb,
+}
+
+/// None for a mesh without triangles: there is nothing to hit.
+fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Placed>, AccelError> {
+    let name = &object.name;
+    let (kind, to_world, mesh, (lo, hi)) = match &object.shape {
+        Shape::Sphere { center, radius } => {
+            let reach = DVec3::splat(*radius);
+            let map = DAffine3::from_mat3_translation(DMat3::from_diagonal(reach), *center);
+            (SHAPE_SPHERE, map, None, (*center - reach.abs(), *center + reach.abs()))
+        }
+        Shape::Quad { center, u, v } => {
+            let normal = u.cross(*v);
+            // A third axis of the size of the other two keeps the inverse well conditioned.
+            let w = normal / normal.length().sqrt();
+            let map = DAffine3::from_mat3_translation(DMat3::from_cols(*u, *v, w), *center);
+            let reach = u.abs() + v.abs();
+            (SHAPE_QUAD, map, None, (*center - reach, *center + reach))
+        }
+        Shape::Mesh { mesh, .. } if mesh.triangles.is_empty() => return Ok(None),
+        Shape::Mesh { mesh, to_world } => {
+            let built = meshes.add(name, mesh)?;
+            (SHAPE_MESH, *to_world, Some(built), bounds(mesh, to_world))
+        }
+    };
+    let to_object = to_world.inverse();
+    if !(to_world.is_finite() && to_object.is_finite()) {
+        return Err(AccelError::Flat { name: name.clone() });
+    }
+    let instance = Instance {
+        to_object: rows(name, "the inverse of its size", to_object)?,
+        to_world: rows(name, "its place or size", to_world)?,
+        kind,
+        material: object.material as u32,
+        object: index as u32,
+        root: 0,
+    };
+    Ok(Some(Placed { instance, mesh, bounds: roomy_box(lo, hi) }))
+}
+
+/// World box of the triangles.
+fn bounds(mesh: &Mesh, to_world: &DAffine3) -> (DVec3, DVec3) {
+    let none = (DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY));
+    let corners = mesh.triangles.iter().flatten().filter_map(|&i| mesh.positions.get(i as usize));
+    corners.map(|p| to_world.transform_point3(p.as_dvec3())).fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)))
+}
+
+fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
+    let name = &material.name;
+    let (kind, ior, colour, absorption) = match material.kind {
+        MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, 1.0, albedo, [0.0; 3]),
+        MaterialKind::Dielectric { ior, absorption } => (MATERIAL_DIELECTRIC, ior, [1.0; 3], absorption),
+        MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, 1.0, reflectance, [0.0; 3]),
+    };
+    Ok(Material {
+        kind,
+        ior: number(name, "its index", ior)?,
+        colour: vector(name, "its colour", colour.into())?,
+        absorption: vector(name, "its absorption", absorption.into())?,
+    })
+}
+
+fn light(light: &crate::scene::Light) -> Result<Light, AccelError> {
+    let (kind, at, power) = match light.kind {
+        LightKind::Directional { direction, irradiance } => (LIGHT_DIRECTIONAL, direction, irradiance),
+        LightKind::Point { position, intensity } => (LIGHT_POINT, position, intensity),
+    };
+    let power = vector(&light.name, "its power", power.into())?;
+    Ok(Light { kind, vector: vector(&light.name, "its place or direction", at)?, power })
+}
+
+fn rows(name: &str, what: &'static str, map: DAffine3) -> Result<[[f32; 4]; 3], AccelError> {
+    let row = |k: usize| -> Result<[f32; 4], AccelError> {
+        let [x, y, z] = vector(name, what, map.matrix3.row(k))?;
+        Ok([x, y, z, number(name, what, map.translation[k])?])
+    };
+    Ok([row(0)?, row(1)?, row(2)?])
+}
+
+fn vector(name: &str, what: &'static str, v: DVec3) -> Result<[f32; 3], AccelError> {
+    Ok([number(name, what, v.x)?, number(name, what, v.y)?, number(name, what, v.z)?])
+}
+
+fn number(name: &str, what: &'static str, value: f64) -> Result<f32, AccelError> {
+    if value.abs() <= LARGEST {
+        return Ok(value as f32);
+    }
+    Err(AccelError::Range { name: name.to_owned(), what, value, limit: LARGEST })
+}

@@ -1,0 +1,3 @@
+//! Floor 2: rooms that several methods share.
+
+pub mod accel;
