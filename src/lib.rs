@@ -3,5 +3,6 @@
 pub mod image;
 pub mod optics;
 pub mod stats;
+pub mod store;
 pub mod truth;
 pub mod whole;
