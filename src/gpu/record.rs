@@ -210,7 +210,7 @@ unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[
         device.cmd_set_viewport(commands, 0, &[viewport]);
         device.cmd_set_scissor(commands, 0, &[area]);
         for d in draws {
-            device.cmd_draw(commands, d.vertices, d.instances, 0, d.first_instance);
+            device.cmd_draw(commands, d.vertices, d.instances, d.first_vertex, d.first_instance);
         }
         device.cmd_end_rendering(commands);
     }

@@ -45,8 +45,12 @@ impl SceneArrays {
     /// Builds all trees; the same scene gives the same bytes.
     pub fn build(scene: &Scene) -> Result<SceneArrays, AccelError> {
         let mut meshes = Meshes::default();
-        let placed: Vec<Placed> =
-            scene.objects.iter().enumerate().filter_map(|(i, o)| place(i, o, &mut meshes).transpose()).collect::<Result<_, _>>()?;
+        let placed: Vec<Placed> = scene
+            .objects
+            .iter()
+            .enumerate()
+            .filter_map(|(i, o)| place(i, o, &mut meshes).transpose())
+            .collect::<Result<_, _>>()?;
         let boxes: Vec<Aabb> = placed.iter().map(|p| p.bounds).collect();
         let top = if boxes.is_empty() { nowhere() } else { Tree::over(&boxes) };
         check_depth(scene, &placed, &meshes, top.depth())?;
@@ -57,7 +61,10 @@ impl SceneArrays {
         };
         let arrays = SceneArrays {
             instances: filled(top.order.iter().filter(|&&i| (i as usize) < placed.len()).map(instance).collect()),
-            nodes: top.moved(0, 0).chain(meshes.all.iter().flat_map(|m| m.tree.moved(base + m.root, m.triangle))).collect(),
+            nodes: top
+                .moved(0, 0)
+                .chain(meshes.all.iter().flat_map(|m| m.tree.moved(base + m.root, m.triangle)))
+                .collect(),
             triangles: filled(meshes.triangles),
             normals: filled(meshes.normals),
             materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
