@@ -3,7 +3,14 @@ use std::{env, path::Path, process::Command};
 
 /// glslang's and SPIRV-Tools' archives, in link order; later glslang versions dropped some, so those that exist are linked.
 const COMPANIONS: [&str; 9] = [
-    "glslang", "MachineIndependent", "GenericCodeGen", "OSDependent", "OGLCompiler", "HLSL", "SPIRV", "SPVRemapper",
+    "glslang",
+    "MachineIndependent",
+    "GenericCodeGen",
+    "OSDependent",
+    "OGLCompiler",
+    "HLSL",
+    "SPIRV",
+    "SPVRemapper",
     "SPIRV-Tools-opt",
 ];
 
@@ -25,8 +32,14 @@ fn main() {
     }
     println!("cargo:rerun-if-changed=.git/HEAD");
     println!("cargo:rerun-if-changed=.git/index");
-    println!("cargo:rustc-env=NEPHROID_COMMIT={}", first_line("git", &["describe", "--always", "--dirty", "--abbrev=12"]));
-    println!("cargo:rustc-env=NEPHROID_RUSTC={}", first_line(&env::var("RUSTC").unwrap_or("rustc".into()), &["--version"]));
+    println!(
+        "cargo:rustc-env=NEPHROID_COMMIT={}",
+        first_line("git", &["describe", "--always", "--dirty", "--abbrev=12"])
+    );
+    println!(
+        "cargo:rustc-env=NEPHROID_RUSTC={}",
+        first_line(&env::var("RUSTC").unwrap_or("rustc".into()), &["--version"])
+    );
 }
 
 /// First line a command prints, or "unknown": a source archive without git still builds.

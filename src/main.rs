@@ -1,1 +1,3 @@
+//! The command line: parses, runs, prints the error chain.
+
 fn main() {}

@@ -1,0 +1,217 @@
+//! The one place that records: barriers, bindings, timestamps and labels around each pass.
+
+use ash::vk;
+use std::ffi::CString;
+
+use super::{
+    access::{Access, Barrier},
+    memory::{Buffer, Image},
+    pipeline::{Pipeline, descriptor_type},
+    plan::{BufferId, Draw, PassDecl, Resource, Target, Work},
+    program::Program,
+    reflect::BindingKind,
+    timer::Timer,
+};
+
+pub(super) fn buffer_barrier<'a>(b: &Barrier, buffer: &Buffer) -> vk::BufferMemoryBarrier2<'a> {
+    vk::BufferMemoryBarrier2::default()
+        .src_stage_mask(b.from.stages)
+        .src_access_mask(b.from.access)
+        .dst_stage_mask(b.to.stages)
+        .dst_access_mask(b.to.access)
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .buffer(buffer.handle)
+        .size(vk::WHOLE_SIZE)
+}
+
+pub(super) fn image_barrier<'a>(b: &Barrier, image: &Image) -> vk::ImageMemoryBarrier2<'a> {
+    vk::ImageMemoryBarrier2::default()
+        .src_stage_mask(b.from.stages)
+        .src_access_mask(b.from.access)
+        .dst_stage_mask(b.to.stages)
+        .dst_access_mask(b.to.access)
+        .old_layout(b.from.layout)
+        .new_layout(b.to.layout)
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .image(image.handle)
+        .subresource_range(image.range())
+}
+
+/// Writes small buffers from the command stream, before the first pass.
+///
+/// # Safety
+/// The program's command buffer is recording.
+pub(super) unsafe fn updates(program: &Program, updates: &[(BufferId, &[u8])]) {
+    let commands = program.commands();
+    for (id, bytes) in updates {
+        let buffer = &program.buffers[id.0];
+        let before = buffer.history.borrow_mut().advance(Access::CopyWrite, false);
+        program.barriers(commands, before.iter().map(|b| buffer_barrier(b, buffer)).collect(), Vec::new());
+        // SAFETY: the buffer holds at least these bytes, a multiple of four and below 64 KiB by its declaration.
+        unsafe { program.shared.device.cmd_update_buffer(commands, buffer.handle, 0, bytes) }
+    }
+}
+
+/// Records one pass.
+///
+/// # Safety
+/// The program's command buffer is recording, and the pass's resources are alive.
+pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &Timer, counting: bool) {
+    let (pass, pipeline, commands) = (&program.plan.passes[index], &*program.pipelines[index], program.commands());
+    let device = &program.shared.device;
+    let counts = counting && matches!(pass.work, Work::Raster { .. });
+    // SAFETY: recording is promised by the caller; queries begin and end outside rendering.
+    unsafe {
+        label(program, commands, Some(&pass.name));
+        resource_barriers(program, pass);
+        timer.stamp(commands, 2 * slot);
+        if counts {
+            timer.begin_counting(commands, slot);
+        }
+        device.cmd_bind_pipeline(commands, pipeline.point, pipeline.handle);
+        bind(program, pass, pipeline);
+        match &pass.work {
+            Work::Compute { groups, .. } => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+            Work::Raster { targets, draws, .. } => draw(program, pass, targets, draws),
+        }
+        if counts {
+            timer.end_counting(commands, slot);
+        }
+        timer.stamp(commands, 2 * slot + 1);
+        label(program, commands, None);
+    }
+}
+
+/// # Safety
+/// The command buffer is recording.
+unsafe fn label(program: &Program, commands: vk::CommandBuffer, begin: Option<&str>) {
+    let Some(labels) = &program.shared.labels else { return };
+    // SAFETY: promised by the caller; every begin has its end in `pass`.
+    unsafe {
+        match begin {
+            Some(name) => {
+                let name = CString::new(name).unwrap_or_default();
+                let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
+                labels.cmd_begin_debug_utils_label(commands, &info);
+            }
+            None => labels.cmd_end_debug_utils_label(commands),
+        }
+    }
+}
+
+/// Every resource of the pass is brought to the access that the pass declares.
+fn resource_barriers(program: &Program, pass: &PassDecl) {
+    let (mut buffers, mut images) = (Vec::new(), Vec::new());
+    let mut image = |at: usize, access| {
+        let image = &program.images[at];
+        images.extend(image.history.borrow_mut().advance(access, true).map(|b| image_barrier(&b, image)));
+    };
+    for binding in &pass.bindings {
+        match binding.resource {
+            Resource::Image(i) => image(i.0, binding.access),
+            Resource::Buffer(i) => {
+                let buffer = &program.buffers[i.0];
+                let before = buffer.history.borrow_mut().advance(binding.access, false);
+                buffers.extend(before.map(|b| buffer_barrier(&b, buffer)));
+            }
+        }
+    }
+    if let Work::Raster { targets, depth, .. } = &pass.work {
+        targets.iter().for_each(|t| image(t.image.0, Access::Color));
+        depth.iter().for_each(|d| image(d.image.0, Access::Depth));
+    }
+    program.barriers(program.commands(), buffers, images);
+}
+
+/// Pushes descriptors and constants: nothing is allocated in a frame.
+///
+/// # Safety
+/// The command buffer is recording and the pipeline is bound.
+unsafe fn bind(program: &Program, pass: &PassDecl, pipeline: &Pipeline) {
+    let mut buffers = [vk::DescriptorBufferInfo::default(); 32];
+    let mut images = [vk::DescriptorImageInfo::default(); 32];
+    for ((binding, buffer), image) in pass.bindings.iter().zip(&mut buffers).zip(&mut images) {
+        match binding.resource {
+            Resource::Buffer(id) => {
+                buffer.buffer = program.buffers[id.0].handle;
+                buffer.range = vk::WHOLE_SIZE;
+            }
+            Resource::Image(id) => {
+                image.image_view = program.images[id.0].view;
+                image.image_layout = binding.access.scope().layout;
+                image.sampler = program.shared.sampler().unwrap_or_default();
+            }
+        }
+    }
+    let writes: Vec<_> = pass
+        .bindings
+        .iter()
+        .enumerate()
+        .filter_map(|(at, binding)| {
+            let &(number, kind) = pipeline.bindings.get(&binding.name)?;
+            let write = vk::WriteDescriptorSet::default().dst_binding(number).descriptor_type(descriptor_type(kind));
+            Some(match kind {
+                BindingKind::Buffer => write.buffer_info(&buffers[at..=at]),
+                BindingKind::StorageImage | BindingKind::Sampler => write.image_info(&images[at..=at]),
+            })
+        })
+        .collect();
+    let commands = program.commands();
+    // SAFETY: layouts were made from the same reflection; infos live to the end of the call.
+    unsafe {
+        if !writes.is_empty() {
+            program.shared.push.cmd_push_descriptor_set(commands, pipeline.point, pipeline.layout, 0, &writes);
+        }
+        if pipeline.push_bytes > 0 {
+            let (layout, stages) = (pipeline.layout, pipeline.push_stages);
+            program.shared.device.cmd_push_constants(commands, layout, stages, 0, &pass.push);
+        }
+    }
+}
+
+/// # Safety
+/// The command buffer is recording, outside rendering, with the pass's pipeline bound.
+unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[Draw]) {
+    let Work::Raster { depth, .. } = &pass.work else { return };
+    let load = |clears: bool| if clears { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
+    let colors: Vec<_> = targets
+        .iter()
+        .map(|t| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(program.images[t.image.0].layer_views[t.layer as usize])
+                .image_layout(Access::Color.scope().layout)
+                .load_op(load(t.clear.is_some()))
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .clear_value(vk::ClearValue { color: vk::ClearColorValue { float32: t.clear.unwrap_or_default() } })
+        })
+        .collect();
+    let depth_info = depth.as_ref().map(|d| {
+        vk::RenderingAttachmentInfo::default()
+            .image_view(program.images[d.image.0].view)
+            .image_layout(Access::Depth.scope().layout)
+            .load_op(load(d.clear))
+            .store_op(vk::AttachmentStoreOp::STORE)
+            .clear_value(vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 1.0, stencil: 0 } })
+    });
+    let first = targets.first().map(|t| t.image).or(depth.as_ref().map(|d| d.image));
+    let Some([width, height]) = first.map(|id| program.images[id.0].extent) else { return };
+    let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width, height } };
+    let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colors);
+    if let Some(depth) = &depth_info {
+        info = info.depth_attachment(depth);
+    }
+    let viewport = vk::Viewport { width: width as f32, height: height as f32, max_depth: 1.0, ..Default::default() };
+    let (device, commands) = (&program.shared.device, program.commands());
+    // SAFETY: promised by the caller; attachments are in their layouts by the barriers before.
+    unsafe {
+        device.cmd_begin_rendering(commands, &info);
+        device.cmd_set_viewport(commands, 0, &[viewport]);
+        device.cmd_set_scissor(commands, 0, &[area]);
+        for d in draws {
+            device.cmd_draw(commands, d.vertices, d.instances, 0, d.first_instance);
+        }
+        device.cmd_end_rendering(commands);
+    }
+}

@@ -1,0 +1,142 @@
+//! GLSL under `glsl/`, carried in the binary, compiled at run time with includes; SPIR-V is kept in the store.
+
+use include_dir::{Dir, include_dir};
+use shaderc::{
+    CompileOptions, Compiler, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind as Kind, TargetEnv,
+};
+use std::collections::BTreeMap;
+
+use super::error::GpuError;
+use crate::store::Store;
+
+static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
+
+/// Where SPIR-V lies in the store.
+const STORE_KIND: &str = "spirv";
+
+/// The stage a file is for, told by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShaderKind {
+    /// `.vert`
+    Vertex,
+    /// `.geom`
+    Geometry,
+    /// `.frag`
+    Fragment,
+    /// `.comp`
+    Compute,
+}
+
+impl ShaderKind {
+    /// The stage of a file name.
+    pub fn of(file: &str) -> Option<Self> {
+        match file.rsplit('.').next()? {
+            "vert" => Some(Self::Vertex),
+            "geom" => Some(Self::Geometry),
+            "frag" => Some(Self::Fragment),
+            "comp" => Some(Self::Compute),
+            _ => None,
+        }
+    }
+
+    fn shaderc(self) -> Kind {
+        match self {
+            Self::Vertex => Kind::Vertex,
+            Self::Geometry => Kind::Geometry,
+            Self::Fragment => Kind::Fragment,
+            Self::Compute => Kind::Compute,
+        }
+    }
+}
+
+/// The GLSL files by path below `glsl/`, and any that replace them (a test plants faults so).
+#[derive(Clone, Default)]
+pub struct Sources {
+    replaced: BTreeMap<String, String>,
+}
+
+impl Sources {
+    /// The text of a file.
+    pub fn text(&self, path: &str) -> Option<&str> {
+        self.replaced
+            .get(path)
+            .map(String::as_str)
+            .or_else(|| EMBEDDED.get_file(path).and_then(|file| file.contents_utf8()))
+    }
+
+    /// Puts `text` in the place of a file, or adds one.
+    pub fn replace(&mut self, path: &str, text: impl Into<String>) {
+        self.replaced.insert(path.to_owned(), text.into());
+    }
+
+    /// Compiles a file with its defines; `provided` maps virtual includes to files. Words of SPIR-V.
+    pub fn compile(
+        &self,
+        file: &str,
+        defines: &[(String, String)],
+        provided: &[(String, String)],
+        store: &Store,
+    ) -> Result<Vec<u32>, GpuError> {
+        let fail = |text: String| GpuError::Shader { file: format!("glsl/{file}"), text };
+        let kind = ShaderKind::of(file).ok_or_else(|| fail("its extension names no stage".into()))?;
+        let source = self.text(file).ok_or_else(|| fail("there is no such file".into()))?;
+        let key = self.key(file, defines, provided);
+        if let Some(bytes) = store.get(STORE_KIND, &key)
+            && bytes.len() % 4 == 0
+        {
+            return Ok(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect());
+        }
+        let words = self.translate(file, kind, source, defines, provided).map_err(fail)?;
+        // A store that cannot be written costs time at the next start, no more.
+        let _ = store.put(STORE_KIND, &key, bytemuck::cast_slice(&words));
+        Ok(words)
+    }
+
+    fn translate(
+        &self,
+        file: &str,
+        kind: ShaderKind,
+        source: &str,
+        defines: &[(String, String)],
+        provided: &[(String, String)],
+    ) -> Result<Vec<u32>, String> {
+        let compiler = Compiler::new().map_err(|e| e.to_string())?;
+        let mut options = CompileOptions::new().map_err(|e| e.to_string())?;
+        options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
+        options.set_optimization_level(OptimizationLevel::Performance);
+        options.set_generate_debug_info(); // keeps the names that bindings are matched by
+        for (name, value) in defines {
+            options.add_macro_definition(name, Some(value));
+        }
+        options.set_include_callback(|asked, _, from, _| {
+            let path = provided.iter().find(|(name, _)| name == asked).map_or(asked, |(_, path)| path);
+            let content = self.text(path).ok_or_else(|| format!("{from} includes {path}, which is not in glsl/"))?;
+            Ok(ResolvedInclude { resolved_name: path.to_owned(), content: content.to_owned() })
+        });
+        let binary = compiler
+            .compile_into_spirv(source, kind.shaderc(), file, "main", Some(&options))
+            .map_err(|e| e.to_string())?;
+        Ok(binary.as_binary().to_vec())
+    }
+
+    /// What the SPIR-V depends on: every GLSL file (an include may reach any of them), the defines, this build.
+    fn key(&self, file: &str, defines: &[(String, String)], provided: &[(String, String)]) -> String {
+        let mut hash = blake3::Hasher::new();
+        hash_folder(&EMBEDDED, &mut hash);
+        let replaced = self.replaced.iter().map(|(a, b)| (a.as_str(), b.as_str()));
+        let pairs = defines.iter().chain(provided).map(|(a, b)| (a.as_str(), b.as_str()));
+        for (a, b) in replaced.chain(pairs).chain([(file, env!("CARGO_PKG_VERSION"))]) {
+            hash.update(a.as_bytes()).update(b"\0").update(b.as_bytes()).update(b"\0");
+        }
+        hash.finalize().to_hex().to_string()
+    }
+}
+
+fn hash_folder(folder: &Dir<'_>, hash: &mut blake3::Hasher) {
+    for file in folder.files() {
+        hash.update(file.path().as_os_str().as_encoded_bytes()).update(file.contents());
+    }
+    for inner in folder.dirs() {
+        hash_folder(inner, hash);
+    }
+}

@@ -1,0 +1,14 @@
+//! Closed forms: caustics and direct light known to float64, for tests to be judged by.
+//!
+//! * [`SphereCaustic`]: a glass sphere over a floor, under parallel light or an axial point light, class `transmit-2`.
+//! * [`flat_water`]: below a flat water surface, class `transmit-1`.
+//! * [`direct_parallel`], [`direct_point`]: direct irradiance.
+//!
+//! All light here is one band: watts, W/m² and W/sr of it.
+
+mod plane;
+mod quadrature;
+mod sphere;
+
+pub use plane::{direct_parallel, direct_point, flat_water};
+pub use sphere::{GlassSphere, Illumination, OutsideDomain, SphereCaustic};
