@@ -9,3 +9,4 @@ pub mod store;
 pub mod view;
 pub mod truth;
 pub mod whole;
+pub mod scene;

@@ -8,8 +8,8 @@ const MAX_KEYWORD: usize = 79;
 
 /// The named layer as a PNG file, [tone-mapped](tone_map) at exposure `ev`; the same bytes for the same input.
 ///
-/// A scalar layer is grey, of two or more channels the first three are red, green, blue. Each entry of `provenance` is an
-/// `iTXt` chunk (UTF-8).
+/// A scalar layer is grey; of two or more channels the first three are red, green, blue. Each entry of `provenance` is
+/// an `iTXt` chunk (UTF-8).
 ///
 /// # Errors
 /// [`ImageError::Layer`] if there is no such layer; [`ImageError::Empty`] without pixels, [`ImageError::Provenance`]

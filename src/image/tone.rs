@@ -9,10 +9,10 @@ const NOT_FINITE: [u8; 3] = [255, 0, 255];
 
 /// Tone-maps one pixel of linear radiance, RGB with sRGB primaries, to 8-bit sRGB.
 ///
-/// Radiance × 2^`ev`, so that 1 is white at EV 0. The largest band m beyond 0.6 rolls off to
-/// 0.6 + 0.4 x/(1 + x), x = (m − 0.6)/0.4 — smooth at the knee, never quite white — and the other bands are scaled with it,
-/// so a highlight keeps its hue. Then the sRGB curve (IEC 61966-2-1). Negative bands are black; a pixel with a band that
-/// is not finite is magenta, so that it is seen.
+/// Radiance × 2^`ev`, so that 1 is white at EV 0. The largest band m beyond 0.6 rolls off to 0.6 + 0.4 x/(1 + x),
+/// x = (m − 0.6)/0.4 (smooth at the knee, never quite white), and the other bands are scaled with it, so a highlight
+/// keeps its hue. Then the sRGB curve (IEC 61966-2-1). Negative bands are black; a pixel with a band that is not finite
+/// is magenta, so that it is seen.
 pub fn tone_map(radiance: [f32; 3], ev: f64) -> [u8; 3] {
     if radiance.iter().any(|band| !band.is_finite()) {
         return NOT_FINITE;

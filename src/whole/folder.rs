@@ -34,7 +34,8 @@ impl OutFolder {
         Ok(Self { staging, made, target: target.to_path_buf(), names: Vec::new() })
     }
 
-    /// Writes one file of the set, to be known as `name` (a plain file name) in the folder. Written twice, the last counts.
+    /// Writes one file of the set, to be known as `name` (a plain file name) in the folder. Written twice, the last
+    /// counts.
     ///
     /// # Errors
     /// [`FileError`] if the disk does not take it, `write` fails, or `name` is not plain or names a folder.

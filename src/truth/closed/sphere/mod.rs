@@ -2,9 +2,9 @@
 //!
 //! A ray that meets the sphere under the angle θ refracts in and out in the plane of the axis (class `transmit-2`) and
 //! lands at a signed distance ρ(θ) from the axis, negative once it has crossed it. The flux inside a circle of radius r
-//! is the integral of flux × transmission over all θ with |ρ(θ)| ≤ r. Folds of the caustic are extrema of ρ, so ρ is cut
-//! there into monotone branches; on each the θ of ±r is found by bisection, and nothing is singular, at folds or on
-//! the axis. Rays that leave sideways or upwards (bent by 90° or more) never meet the floor and belong to no branch.
+//! is the integral of flux × transmission over all θ with |ρ(θ)| ≤ r. Folds of the caustic are extrema of ρ, so ρ is
+//! cut there into monotone branches; on each the θ of ±r is found by bisection, and nothing is singular, at folds or
+//! on the axis. Rays that leave sideways or upwards (bent by 90° or more) never meet the floor and belong to no branch.
 
 mod ray_map;
 

@@ -3,6 +3,7 @@
 use super::*;
 use crate::optics::texel_solid_angle;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Rays a side of the square grid over the silhouette.
 const SIDE: i32 = 1200;
@@ -80,7 +81,7 @@ fn grid(glass: GlassSphere, light: Illumination) -> Vec<(f64, f64)> {
             }
         }
     };
-    (0..SIDE * SIDE).filter_map(ray).collect()
+    (0..SIDE * SIDE).into_par_iter().filter_map(ray).collect()
 }
 
 /// Encircled flux at many radii, the total, and what misses the floor: all against the grid.

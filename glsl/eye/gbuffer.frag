@@ -1,0 +1,31 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+// The G-buffer: 1 + instance, primitive, and (u, v), from which any pass makes the surface again without loss.
+// Depth is linear in metres, so that it keeps its digits far from the eye.
+
+#include "shared/bvh.glsl"
+#include "shared/frame.glsl"
+
+layout(push_constant, scalar) uniform Push { ivec2 size; } push;
+
+layout(location = 0) in vec2 shape_uv;
+layout(location = 1) in float eye_depth;
+layout(location = 2) flat in uvec2 shape;
+layout(location = 0) out uvec4 seen;
+
+void main() {
+    View eye = frame.data.eye;
+    float depth = eye_depth;
+    Instance at = scene_instances.data[shape.x];
+    if (at.kind == SHAPE_SPHERE) {
+        vec3 o, d;
+        view_ray(eye, gl_FragCoord.xy / vec2(push.size), o, d);
+        float t = hit_sphere(local_ray(map_point(at.to_object, o), map_vector(at.to_object, d)), NO_HIT);
+        if (!(t < NO_HIT)) discard;
+        depth = dot(o + t * d - eye.origin, eye.forward);
+    }
+    gl_FragDepth = clamp((depth - eye.near) / (eye.far - eye.near), 0.0, 1.0);
+    seen = uvec4(shape.x + 1u, shape.y, floatBitsToUint(shape_uv));
+}

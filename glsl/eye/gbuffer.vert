@@ -1,0 +1,49 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+// What the eye sees, rasterised: an instance a draw, vertices pulled from the scene. A quad is two triangles, a sphere
+// the box about it (the fragment shader intersects it exactly), a mesh its own triangles.
+
+#include "shared/bvh.glsl"
+#include "shared/frame.glsl"
+
+layout(location = 0) out vec2 shape_uv;
+layout(location = 1) out float eye_depth; // metres along the eye's forward axis
+layout(location = 2) flat out uvec2 shape; // instance, primitive
+
+const float ABOUT = 1.001; // the sphere touches its box; a rounded edge must not cut it
+
+vec3 box_corner(int vertex) {
+    int face = vertex / 6, corner = vertex % 6;
+    vec2 q = vec2((corner == 1 || corner == 2 || corner == 4) ? 1.0 : -1.0, corner >= 2 && corner != 3 ? 1.0 : -1.0);
+    float side = (face & 1) == 0 ? 1.0 : -1.0;
+    vec3 p = vec3(q, side);
+    return ABOUT * (face < 2 ? p : face < 4 ? p.yzx : p.zxy);
+}
+
+vec2 quad_corner(int vertex) {
+    return vec2((vertex == 1 || vertex == 2 || vertex == 4) ? 1.0 : -1.0, vertex >= 2 && vertex != 3 ? 1.0 : -1.0);
+}
+
+void main() {
+    Instance at = scene_instances.data[gl_InstanceIndex];
+    vec3 local;
+    shape = uvec2(uint(gl_InstanceIndex), 0u);
+    shape_uv = vec2(0.0);
+    if (at.kind == SHAPE_SPHERE) {
+        local = box_corner(gl_VertexIndex);
+    } else if (at.kind == SHAPE_QUAD) {
+        shape_uv = quad_corner(gl_VertexIndex);
+        local = vec3(shape_uv, 0.0);
+    } else {
+        shape.y = uint(gl_VertexIndex) / 3u;
+        Triangle triangle = scene_triangles.data[shape.y];
+        int corner = gl_VertexIndex % 3;
+        local = corner == 0 ? triangle.a : corner == 1 ? triangle.b : triangle.c;
+        shape_uv = vec2(corner == 1 ? 1.0 : 0.0, corner == 2 ? 1.0 : 0.0);
+    }
+    vec3 p = map_point(at.to_world, local);
+    eye_depth = dot(p - frame.data.eye.origin, frame.data.eye.forward);
+    gl_Position = view_clip(frame.data.eye, p);
+}

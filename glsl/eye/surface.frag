@@ -1,0 +1,32 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+// Slot `surface` seen by the eye: what a provider's `surface_irradiance` says, the mean of a pixel's samples.
+
+#include "eye/gbuffer.glsl"
+#include "provider.glsl"
+
+layout(location = 0) out vec4 irradiance;
+layout(location = 1) out vec4 radiance;
+
+const float PI = 3.14159265358979;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    irradiance = vec4(0.0);
+    radiance = vec4(0.0);
+    int samples = push.samples * push.samples;
+    for (int k = 0; k < samples; k++) {
+        Surface s;
+        vec3 d;
+        if (!eye_surface(sample_texel(pixel, k), s, d)) continue;
+        Material m = scene_materials.data[s.material];
+        if (m.kind != MATERIAL_DIFFUSE) continue;
+        vec3 e = surface_irradiance(s.p, facing_normal(s, d), s.object, s.uv);
+        irradiance.rgb += e;
+        radiance.rgb += e * m.colour / PI;
+    }
+    irradiance /= float(samples);
+    radiance /= float(samples);
+}

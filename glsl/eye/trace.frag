@@ -1,0 +1,97 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+// Pixels that look at or through specular objects: the Fresnel tree, exact, to DEPTH events a path, added to the
+// radiance of direct light and of the caustic. What lies deeper is not seen.
+
+#include "eye/direct.glsl"
+#include "eye/gbuffer.glsl"
+#include "provider.glsl"
+
+layout(location = 0) out vec4 direct;
+layout(location = 1) out vec4 caustic;
+
+const float PI = 3.14159265358979;
+const float FAR = 3.0e38;
+const uint MEDIUM_AIR = 0xffffffffu;
+const float FAINT = 1e-4; // a branch that carries less of what the eye sees is left
+
+struct Branch {
+    vec3 o;
+    vec3 d;
+    vec3 share; // of the radiance at its end that reaches the eye
+    uint medium;
+    int events;
+};
+
+Branch pending[DEPTH + 2];
+int pending_count = 0;
+
+void follow(Surface s, vec3 d, vec3 share, uint medium, int events) {
+    if (pending_count >= DEPTH + 2 || !(max(share.r, max(share.g, share.b)) > FAINT)) return;
+    pending[pending_count++] = Branch(leave(s, d), d, share, medium, events);
+}
+
+// One specular surface: its reflected and refracted rays. L/n^2 is invariant across an interface.
+void split(Surface s, vec3 d, vec3 share, uint medium, int events) {
+    Material m = scene_materials.data[s.material];
+    uint bent = 0u;
+    float reflectance;
+    vec3 reflected, refracted;
+    bool entering = dot(d, s.ng) < 0.0;
+    float from = entering ? 1.0 : m.ior;
+    float to = entering ? m.ior : 1.0;
+    if (m.kind == MATERIAL_MIRROR) {
+        bend_reflect(s, d, 1.0, 1.0, reflected, reflectance, bent);
+        follow(s, reflected, share * m.colour, medium, events + 1);
+        return;
+    }
+    if (bend_refract(s, d, from, to, refracted, reflectance, bent)) {
+        float scale = from / to;
+        uint inside = entering ? s.material : MEDIUM_AIR;
+        follow(s, refracted, share * (1.0 - reflectance) * scale * scale, inside, events + 1);
+    }
+    bend_reflect(s, d, from, to, reflected, reflectance, bent);
+    follow(s, reflected, share * reflectance, medium, events + 1);
+}
+
+vec3 medium_transmits(uint medium, float metres) {
+    return medium == MEDIUM_AIR ? vec3(1.0) : absorb(scene_materials.data[medium].absorption, metres);
+}
+
+void look(Surface s, vec3 d) {
+    bool inside = dot(d, s.ng) > 0.0 && scene_materials.data[s.material].kind == MATERIAL_DIELECTRIC;
+    uint medium = inside ? s.material : MEDIUM_AIR;
+    vec3 first = inside ? medium_transmits(medium, length(s.p - frame.data.eye.origin)) : vec3(1.0);
+    split(s, d, first, medium, 0);
+    while (pending_count > 0) {
+        Branch b = pending[--pending_count];
+        Hit hit;
+        if (!trace(b.o, b.d, FAR, MASK_ALL, hit)) continue;
+        Surface at = surface_at(b.o, b.d, hit);
+        Material m = scene_materials.data[at.material];
+        vec3 share = b.share * medium_transmits(b.medium, hit.t);
+        if (m.kind == MATERIAL_DIFFUSE) {
+            direct.rgb += share * direct_irradiance(at, b.d) * m.colour / PI;
+            caustic.rgb += share * surface_irradiance(at.p, facing_normal(at, b.d), at.object, at.uv) * m.colour / PI;
+        } else if (b.events < DEPTH) {
+            split(at, b.d, share, b.medium, b.events);
+        }
+    }
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    direct = vec4(0.0);
+    caustic = vec4(0.0);
+    int samples = push.samples * push.samples;
+    for (int k = 0; k < samples; k++) {
+        Surface s;
+        vec3 d;
+        if (!eye_surface(sample_texel(pixel, k), s, d)) continue;
+        if (scene_materials.data[s.material].kind != MATERIAL_DIFFUSE) look(s, d);
+    }
+    direct /= float(samples);
+    caustic /= float(samples);
+}

@@ -1,0 +1,110 @@
+// Tracer `bvh`: exact intersection; from a light sample to a photon of one path class.
+//
+// EVENTS specular events, all of them reflections if REFLECT is 1, else transmissions. At a dielectric Fresnel's share
+// of the other kind is booked as `other`; a mirror reflects its reflectance and absorbs the rest.
+#ifndef TRACER_GLSL
+#define TRACER_GLSL
+
+#include "shared/interface.glsl"
+#include "shared/photon.glsl"
+
+const float FAR = 3.0e38;
+const uint MEDIUM_AIR = 0xffffffffu; // a medium is named by its material
+
+// Takes from the photon what the medium absorbs on a way.
+void travel(inout Photon p, uint medium, float metres) {
+    if (medium == MEDIUM_AIR) return;
+    vec3 left = p.flux * absorb(scene_materials.data[medium].absorption, metres);
+    p.absorbed += p.flux - left;
+    p.flux = left;
+}
+
+// One specular event: bends d, moves flux to its buckets, changes the medium. The status it leaves, VALID to go on.
+uint interact(inout Photon p, Surface s, inout vec3 d, inout uint medium) {
+    Material m = scene_materials.data[s.material];
+    bool entering = dot(d, s.ng) < 0.0;
+    if (m.kind == MATERIAL_MIRROR) {
+#if REFLECT
+        float unused;
+        vec3 r;
+        bend_reflect(s, d, 1.0, 1.0, r, unused, p.bent);
+        d = r;
+        p.absorbed += p.flux * (1.0 - m.colour);
+        p.flux *= m.colour;
+        return PHOTON_VALID;
+#else
+        return PHOTON_BLOCKED;
+#endif
+    }
+    float from = entering ? 1.0 : m.ior;
+    float to = entering ? m.ior : 1.0;
+    float reflectance;
+    vec3 bent;
+#if REFLECT
+    bend_reflect(s, d, from, to, bent, reflectance, p.bent);
+    p.other += p.flux * (1.0 - reflectance);
+    p.flux *= reflectance;
+#else
+    if (!bend_refract(s, d, from, to, bent, reflectance, p.bent)) return PHOTON_TOTAL_REFLECTION;
+    p.other += p.flux * reflectance;
+    p.flux *= 1.0 - reflectance;
+    medium = entering ? s.material : MEDIUM_AIR;
+#endif
+    d = bent;
+    return PHOTON_VALID;
+}
+
+// Whether the sample would meet a specular object if nothing stood before it.
+bool is_emitted(LightSample light, bool found, Hit first) {
+    if (found && material_mask(scene_instances.data[first.instance].material) == MASK_SPECULAR) return true;
+    Hit behind;
+    return found && trace(light.origin, light.direction, FAR, MASK_SPECULAR, behind);
+}
+
+Photon trace_photon(LightSample light) {
+    vec3 zero = vec3(0.0);
+    Photon p = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
+    vec3 o = light.origin, d = light.direction;
+    Hit hit;
+    bool found = trace(o, d, FAR, MASK_ALL, hit);
+    if (!is_emitted(light, found, hit)) return p;
+    p.emitted = light.flux;
+    p.flux = light.flux;
+    uint medium = MEDIUM_AIR;
+    for (int events = 0; events <= EVENTS; events++) {
+        if (!found) {
+            p.status = PHOTON_MISSED;
+            return p;
+        }
+        Surface s = surface_at(o, d, hit);
+        bool diffuse = material_mask(s.material) == MASK_DIFFUSE;
+        // A light inside a dielectric: its first ray meets the surface from within.
+        if (events == 0 && !diffuse && scene_materials.data[s.material].kind == MATERIAL_DIELECTRIC &&
+            dot(d, s.ng) > 0.0) {
+            medium = s.material;
+        }
+        travel(p, medium, hit.t);
+        if (!any(greaterThan(p.flux, zero))) {
+            p.status = PHOTON_ABSORBED;
+            return p;
+        }
+        if (diffuse) {
+            p.status = events == EVENTS ? PHOTON_VALID : PHOTON_BLOCKED;
+            p.hit = s.p;
+            p.normal = facing_normal(s, d);
+            p.receiver = s.object;
+            return p;
+        }
+        if (events == EVENTS) break;
+        p.status = interact(p, s, d, medium);
+        if (p.status != PHOTON_VALID) return p;
+        p.exit = s.p;
+        p.direction = d;
+        o = leave(s, d);
+        found = trace(o, d, FAR, MASK_ALL, hit);
+    }
+    p.status = PHOTON_BOUNCE_LIMIT;
+    return p;
+}
+
+#endif

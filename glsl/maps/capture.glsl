@@ -1,0 +1,7 @@
+// Which photons the caustic map takes: the account calls it, as the gather does.
+#include "maps/views.glsl"
+
+bool captured(vec3 p, vec3 n, uint light) {
+    vec2 xy01;
+    return map_captures(maps_views.data[map_layer(light)], p, n, xy01);
+}

@@ -1,0 +1,36 @@
+// Slot `surface` as the caustic map provides it: irradiance at any world point.
+#include "maps/views.glsl"
+
+layout(set = 0, binding = 12) uniform sampler2DArray maps_map; // W a texel
+
+// Zero outside: what is not in the map was counted as outside it.
+vec3 map_texel(ivec3 at, ivec2 size) {
+    if (any(lessThan(at.xy, ivec2(0))) || any(greaterThanEqual(at.xy, size))) return vec3(0.0);
+    return texelFetch(maps_map, at, 0).rgb;
+}
+
+// Bilinear, in full precision (samplers keep 8 bits of the fraction).
+vec3 map_flux(vec2 xy01, int layer, ivec2 size) {
+    vec2 at = xy01 * vec2(size) - 0.5;
+    ivec2 low = ivec2(floor(at));
+    vec2 f = at - vec2(low);
+    vec3 top = mix(map_texel(ivec3(low, layer), size), map_texel(ivec3(low + ivec2(1, 0), layer), size), f.x);
+    vec3 bottom =
+        mix(map_texel(ivec3(low + ivec2(0, 1), layer), size), map_texel(ivec3(low + ivec2(1, 1), layer), size), f.x);
+    return mix(top, bottom, f.y);
+}
+
+// Irradiance (W/m^2) at p on the side of unit geometric normal n: flux over the texel's footprint on the receiver.
+vec3 surface_irradiance(vec3 p, vec3 n, uint receiver, vec2 uv) {
+    ivec2 size = textureSize(maps_map, 0).xy;
+    vec3 sum = vec3(0.0);
+    for (int layer = 0; layer < maps_views.data.length(); layer++) {
+        View v = maps_views.data[layer];
+        vec2 xy01;
+        if (!map_project(v, p, n, xy01)) continue;
+        // A texel beyond the border there is nothing to blend; this also keeps huge coordinates from an int.
+        if (any(lessThan(xy01, vec2(-1.0))) || any(greaterThan(xy01, vec2(2.0)))) continue;
+        sum += map_flux(xy01, layer, size) / view_texel_area(v, size, xy01, p, n);
+    }
+    return sum;
+}

@@ -1,0 +1,57 @@
+// A photon: one light sample after its specular interactions (methods: "photon buffer", "volume caustic buffer").
+#ifndef PHOTON_GLSL
+#define PHOTON_GLSL
+
+#include "shared/octahedral.glsl"
+
+// How a photon ended. Every emitted photon ends in exactly one; the host counts in the same order.
+const uint PHOTON_NONE = 0u; // the sample meets no specular object: nothing was emitted
+const uint PHOTON_VALID = 1u;
+const uint PHOTON_TOTAL_REFLECTION = 2u;
+const uint PHOTON_MISSED = 3u;       // left the scene
+const uint PHOTON_BLOCKED = 4u;      // an opaque surface before the chain was complete
+const uint PHOTON_ABSORBED = 5u;     // no flux left
+const uint PHOTON_BOUNCE_LIMIT = 6u; // met a further specular surface after the chain was complete
+const uint PHOTON_OUTSIDE_MAP = 7u;  // valid, but not where the method looks
+const uint PHOTON_STATUSES = 8u;
+
+// A light sample: what a tracer starts from.
+struct LightSample {
+    vec3 origin;
+    vec3 direction;
+    vec3 flux;       // W
+    float footprint; // m^2 (directional) or sr (point): the part of the light it stands for
+};
+
+struct Photon {
+    vec3 hit;       // on the receiver
+    vec3 exit;      // on the last specular surface
+    vec3 direction; // unit, of travel, after the last specular surface
+    vec3 normal;    // the receiver's geometric normal, on the side the photon came from
+    vec3 flux;      // W, on arrival
+    vec3 emitted;   // W
+    vec3 other;     // W, Fresnel's share of other path classes
+    vec3 absorbed;  // W
+    uint receiver;  // object
+    uint status;
+    uint bent;      // times the geometric normal bent the ray in place of the interpolated one
+};
+
+// Column `hit`: world position and 1 + receiver; 0 where no photon arrived.
+vec4 photon_hit_column(Photon p) {
+    return p.status == PHOTON_VALID ? vec4(p.hit, float(p.receiver + 1u)) : vec4(0.0);
+}
+
+// Column `flux`: RGB (W), and the receiver's normal, octahedral, 12 bits an axis, exact in a float32 (0.05 degrees).
+vec4 photon_flux_column(Photon p) {
+    if (p.status != PHOTON_VALID) return vec4(0.0);
+    uvec2 e = uvec2(round((octahedral_encode(p.normal) * 0.5 + 0.5) * 4095.0));
+    return vec4(p.flux, float(e.x * 4096u + e.y));
+}
+
+vec3 photon_normal(float packed) {
+    uint bits = uint(clamp(packed, 0.0, 16777215.0));
+    return octahedral_decode(vec2(bits / 4096u, bits % 4096u) / 4095.0 * 2.0 - 1.0);
+}
+
+#endif

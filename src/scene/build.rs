@@ -1,0 +1,155 @@
+//! The checked scene from the file's tables.
+use std::collections::BTreeMap;
+
+use super::{
+    Camera, CameraKind, Light, LightKind, Material, MaterialKind, PathClassError, Scene, Source,
+    error::SceneError,
+    file::{CameraFile, Floats, LightFile, MaterialFile, SceneFile},
+    load::Files,
+    locate::Key,
+    object::{Meshes, object},
+    patch,
+};
+
+/// Indices of refraction: beyond any real one on both sides.
+const INDICES: std::ops::RangeInclusive<f64> = 0.1..=10.0;
+/// Sine between a camera's axis and its up vector below which the picture has no upright.
+const PARALLEL: f64 = 1e-6;
+/// Degrees: fields of view whose tangent single precision still tells from zero and from infinity.
+const FIELDS: std::ops::RangeInclusive<f64> = 0.001..=179.9;
+
+/// Checks every value and resolves every name; `source` still lacks its hash.
+pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &Files) -> Result<Scene, SceneError> {
+    let unit = root.key("unit").number(file.unit, 1e-9..=1e9, "metres per unit of length")?;
+    let materials = each(root, "materials", &file.materials, |key, name, written| {
+        Ok(Material { name, kind: material(key, written)? })
+    })?;
+    let lights =
+        each(root, "lights", &file.lights, |key, name, written| Ok(Light { name, kind: light(key, written, unit)? }))?;
+    let mut meshes = Meshes::new(files, &source.resolved);
+    let objects = each(root, "objects", &file.objects, |key, name, written| {
+        object(key, name, written, unit, &materials, &mut meshes)
+    })?;
+    let (region, extent) = patch::regions(root, &file.region, file.extent.as_ref(), unit, (&objects, &materials))?;
+    let mut scene = Scene {
+        name,
+        title: file.title,
+        source: Source { hash: meshes.hash(), ..source },
+        paths: file.paths.parse().map_err(|error: PathClassError| {
+            let classes = "reflect-1, transmit-1, transmit-2 or all:N";
+            root.key("paths").fault(classes, format!("`{}`", error.0), "name the class of the scene's caustic")
+        })?,
+        region,
+        extent,
+        exposure: root.key("exposure").number(file.exposure, -64.0..=64.0, "an exposure in EV")?,
+        cameras: cameras(&root.key("cameras"), &file.cameras, unit)?,
+        objects,
+        materials,
+        lights,
+    };
+    scene.cameras.insert("region".to_owned(), patch::camera(&scene));
+    Ok(scene)
+}
+
+/// One thing for each table under `kind`, in the order of their names.
+fn each<F, T>(
+    root: &Key,
+    kind: &str,
+    files: &BTreeMap<String, F>,
+    mut make: impl FnMut(&Key, String, &F) -> Result<T, SceneError>,
+) -> Result<Vec<T>, SceneError> {
+    files.iter().map(|(name, file)| make(&root.key(kind).key(name), name.clone(), file)).collect()
+}
+
+fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> {
+    match (&file.diffuse, &file.dielectric, &file.mirror) {
+        (Some(diffuse), None, None) => {
+            let albedo = key.key("diffuse").key("albedo").share(diffuse.albedo)?;
+            Ok(MaterialKind::Diffuse { albedo })
+        }
+        (None, Some(dielectric), None) => {
+            let key = key.key("dielectric");
+            Ok(MaterialKind::Dielectric {
+                ior: key.key("ior").number(dielectric.ior, INDICES, "an index of refraction")?,
+                absorption: key.key("absorption").strength(dielectric.absorption, "an absorption in 1/m")?,
+            })
+        }
+        (None, None, Some(mirror)) => {
+            let reflectance = key.key("mirror").key("reflectance").share(mirror.reflectance)?;
+            Ok(MaterialKind::Mirror { reflectance })
+        }
+        _ => Err(key.one_kind("diffuse, dielectric or mirror")),
+    }
+}
+
+fn light(key: &Key, file: &LightFile, unit: f64) -> Result<LightKind, SceneError> {
+    match (&file.directional, &file.point) {
+        (Some(sun), None) => {
+            let key = key.key("directional");
+            Ok(LightKind::Directional {
+                direction: key.key("direction").direction(sun.direction)?,
+                irradiance: key.key("irradiance").strength(sun.irradiance, "an irradiance in W/m²")?,
+            })
+        }
+        (None, Some(point)) => {
+            let key = key.key("point");
+            Ok(LightKind::Point {
+                position: key.key("position").point(point.position, unit)?,
+                intensity: key.key("intensity").strength(point.intensity, "an intensity in W/sr")?,
+            })
+        }
+        _ => Err(key.one_kind("directional or point")),
+    }
+}
+
+fn cameras(key: &Key, files: &BTreeMap<String, CameraFile>, unit: f64) -> Result<BTreeMap<String, Camera>, SceneError> {
+    if !files.contains_key("main") {
+        let remedy = "add `[cameras.main.pinhole]`: it makes the picture";
+        return Err(key.fault("a camera called `main`", "none", remedy));
+    }
+    files.iter().map(|(name, file)| Ok((name.clone(), camera(&key.key(name), file, unit)?))).collect()
+}
+
+fn camera(key: &Key, file: &CameraFile, unit: f64) -> Result<Camera, SceneError> {
+    match (&file.pinhole, &file.orthographic) {
+        (Some(c), None) => {
+            let key = key.key("pinhole");
+            let kind = CameraKind::Pinhole { fov_y: key.key("fov_y").number(c.fov_y, FIELDS, "degrees")? };
+            aimed(&key, kind, [c.position, c.target, c.up], unit, c.hides_specular)
+        }
+        (None, Some(c)) => {
+            let key = key.key("orthographic");
+            let height = key.key("height").size(c.height, unit)?;
+            let width = c.width.map(|width| key.key("width").size(width, unit)).transpose()?;
+            aimed(
+                &key,
+                CameraKind::Orthographic { height, width },
+                [c.position, c.target, c.up],
+                unit,
+                c.hides_specular,
+            )
+        }
+        _ => Err(key.one_kind("pinhole or orthographic")),
+    }
+}
+
+fn aimed(
+    key: &Key,
+    kind: CameraKind,
+    [position, target, up]: [Floats<3>; 3],
+    unit: f64,
+    hides_specular: bool,
+) -> Result<Camera, SceneError> {
+    let position = key.key("position").point(position, unit)?;
+    let target = key.key("target").point(target, unit)?;
+    let up = key.key("up").direction(up)?;
+    let Some(forward) = (target - position).try_normalize() else {
+        let remedy = "move one of the two";
+        return Err(key.key("target").fault("a target away from the position", "the camera's own position", remedy));
+    };
+    if forward.cross(up).length() < PARALLEL {
+        let remedy = "choose another up vector, such as [0, 0, -1] for a camera that looks down";
+        return Err(key.key("up").fault("a vector across the line of sight", "one along it", remedy));
+    }
+    Ok(Camera { kind, position, target, up, hides_specular })
+}

@@ -1,0 +1,106 @@
+//! Objects: shapes checked, meshes read and put in place.
+use std::{collections::BTreeMap, sync::Arc};
+
+use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+
+use super::{
+    Material, Mesh, Object, Shape,
+    error::SceneError,
+    file::{MeshFile, ObjectFile, QuadFile},
+    load::Files,
+    locate::Key,
+    obj,
+};
+
+/// Cosine between a quad's edges that passes for a right angle: the rounding of decimal numbers in a file.
+const SQUARE: f64 = 1e-6;
+/// A mesh's largest side in its own units: beyond these its scale overflows single precision.
+const SIDES: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
+
+pub fn object(
+    key: &Key,
+    name: String,
+    file: &ObjectFile,
+    unit: f64,
+    materials: &[Material],
+    meshes: &mut Meshes,
+) -> Result<Object, SceneError> {
+    let names = materials.iter().map(|material| material.name.as_str());
+    let material = key.key("material").resolve("a material", &file.material, names)?;
+    let shape = match (&file.sphere, &file.quad, &file.mesh) {
+        (Some(sphere), None, None) => {
+            let key = key.key("sphere");
+            let center = key.key("center").point(sphere.center, unit)?;
+            Shape::Sphere { center, radius: key.key("radius").size(sphere.radius, unit)? }
+        }
+        (None, Some(written), None) => quad(&key.key("quad"), written, unit)?,
+        (None, None, Some(written)) => mesh(&key.key("mesh"), written, unit, meshes)?,
+        _ => return Err(key.one_kind("sphere, quad or mesh")),
+    };
+    Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
+}
+
+fn quad(key: &Key, file: &QuadFile, unit: f64) -> Result<Shape, SceneError> {
+    let center = key.key("center").point(file.center, unit)?;
+    let (u, v) = (key.key("u").edge(file.u, unit)?, key.key("v").edge(file.v, unit)?);
+    let cosine = u.normalize().dot(v.normalize());
+    if cosine.abs() > SQUARE {
+        let found = format!("an angle of {:.3}°", cosine.acos().to_degrees());
+        return Err(key.key("v").fault("a half edge at right angles to `u`", found, "turn one of the two"));
+    }
+    Ok(Shape::Quad { center, u, v })
+}
+
+/// Scaled so that its largest side, before it is turned, is `fit`; turned about x, then y, then z; its box then rests
+/// on `center`.
+fn mesh(key: &Key, file: &MeshFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
+    let mesh = meshes.read(&key.key("file"), &file.file)?;
+    let fit = key.key("fit").size(file.fit, unit)?;
+    let center = key.key("center").point(file.center, unit)?;
+    for angle in file.rotate.0 {
+        key.key("rotate").number(angle, -360.0..=360.0, "degrees")?;
+    }
+    let side = mesh.bounds(|p| p).map_or(0.0, |[low, high]| (high - low).max_element());
+    // A mesh of one point, or of none, has no size to fit.
+    let scale =
+        if side == 0.0 { unit } else { fit / key.key("file").number(side, SIDES, "a mesh with a largest side")? };
+    let [x, y, z] = file.rotate.0.map(f64::to_radians);
+    let linear = DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x)) * scale;
+    let base = mesh.bounds(|p| linear * p).map_or(DVec3::ZERO, |[low, high]| (0.5 * (low + high)).with_y(low.y));
+    Ok(Shape::Mesh { mesh, to_world: DAffine3::from_mat3_translation(linear, center - base) })
+}
+
+/// The meshes read so far, each once, and the hash over the scene and their bytes.
+pub struct Meshes<'a> {
+    files: &'a Files,
+    hasher: blake3::Hasher,
+    read: BTreeMap<String, Arc<Mesh>>,
+}
+
+impl<'a> Meshes<'a> {
+    pub fn new(files: &'a Files, resolved: &str) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(resolved.as_bytes());
+        Meshes { files, hasher, read: BTreeMap::new() }
+    }
+
+    pub fn hash(&self) -> String {
+        self.hasher.finalize().to_hex().to_string()
+    }
+
+    fn read(&mut self, key: &Key, file: &str) -> Result<Arc<Mesh>, SceneError> {
+        if let Some(mesh) = self.read.get(file) {
+            return Ok(mesh.clone());
+        }
+        let remedy = "mesh paths are relative to the scene file";
+        let unreadable = |why: String| key.fault("a readable OBJ file", format!("{file}: {why}"), remedy);
+        let bytes = self.files.read(file).map_err(unreadable)?;
+        self.hasher.update(&bytes);
+        let mesh = Arc::new(obj::parse(file, &bytes).map_err(|fault| {
+            let line = if fault.line == 0 { String::new() } else { format!(":{}", fault.line) };
+            key.fault(fault.expected, format!("{} at {file}{line}", fault.found), fault.remedy)
+        })?);
+        self.read.insert(file.to_owned(), mesh.clone());
+        Ok(mesh)
+    }
+}
