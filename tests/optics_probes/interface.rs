@@ -2,7 +2,7 @@
 use crate::common::{Probe, gpu, random::Random};
 use crate::{UNIT_ROUNDOFF, f32s, f64s, root_error, squared_cosine};
 use glam::DVec3;
-use nephroid::{optics, passes::accel::SceneArrays, scene::Scene};
+use nephroid::optics;
 
 /// As for a single refraction, normals flipped being free.
 const DIRECTION: f64 = 24.0 * UNIT_ROUNDOFF;
@@ -34,8 +34,7 @@ fn bend(rows: &[Row]) -> Vec<Answer> {
                r.passed = passed ? 1.0 : 0.0; r.bent = float(bent); r.mirror_bent = float(mirror_bent);",
         ..Default::default()
     };
-    let arrays = SceneArrays::build(&Scene::load("glass-sphere", &[]).unwrap()).unwrap();
-    let outputs: Vec<[f32; 10]> = probe.run_with(&gpu(), rows, |plan| arrays.upload(plan).to_vec());
+    let outputs: Vec<[f32; 10]> = probe.run(&gpu(), rows);
     let answer = |y: &[f32; 10]| Answer {
         t: f64s([y[0], y[1], y[2]]),
         passed: y[3] == 1.0,

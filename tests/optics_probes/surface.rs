@@ -3,7 +3,7 @@ use crate::common::{Probe, gpu, random::Random};
 use crate::f32s;
 use glam::{DAffine3, DVec3};
 use nephroid::{
-    passes::accel::SceneArrays,
+    passes::{accel::SceneArrays, scene::SceneBuffers},
     scene::{Scene, Shape},
 };
 
@@ -78,7 +78,7 @@ fn tracks(scene: &Scene, rays: &[[f32; 6]]) -> Vec<Track> {
                }",
         ..Default::default()
     };
-    let outputs: Vec<[f32; 7]> = probe.run_with(&gpu(), rays, |plan| arrays.upload(plan).to_vec());
+    let outputs: Vec<[f32; 7]> = probe.run_with(&gpu(), rays, |plan| SceneBuffers::upload(plan, &arrays).tracing());
     let track =
         |y: &[f32; 7]| Track { t: y[0], object: y[1], eps: y[2], place: y[3], again: y[4], inside: y[5], curved: y[6] };
     outputs.iter().map(track).collect()

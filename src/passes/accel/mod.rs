@@ -8,7 +8,6 @@ use std::{collections::HashMap, sync::Arc};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use obvhs::aabb::Aabb;
 
-use crate::gpu::{BufferId, Plan};
 use crate::scene::{LightKind, Material as SceneMaterial, MaterialKind, Mesh, Object, Scene, Shape};
 
 mod error;
@@ -80,20 +79,6 @@ impl SceneArrays {
         };
         check_count("nodes", arrays.nodes.len(), LARGEST_INDEX)?;
         Ok(arrays)
-    }
-}
-
-impl SceneArrays {
-    /// Adds the buffers to a plan; the names are those of `scene.glsl`, for `Pass::read_all`.
-    pub fn upload(&self, plan: &mut Plan) -> [(&'static str, BufferId); 6] {
-        [
-            ("scene_nodes", plan.upload("scene/nodes", &self.nodes)),
-            ("scene_triangles", plan.upload("scene/triangles", &self.triangles)),
-            ("scene_normals", plan.upload("scene/normals", &self.normals)),
-            ("scene_instances", plan.upload("scene/instances", &self.instances)),
-            ("scene_materials", plan.upload("scene/materials", &self.materials)),
-            ("scene_lights", plan.upload("scene/lights", &self.lights)),
-        ]
     }
 }
 
