@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 /// Rays start up to this many radii away.
 const REACH: f64 = 8.0;
 /// Places: a few roundings of coordinates as large as the way to the shape.
-const PLACE: f64 = 16.0 * UNIT_ROUNDOFF * REACH;
+const PLACE: f64 = 4.0 * UNIT_ROUNDOFF * REACH;
 /// 1 − |nearest point|²: the point carries the rounding of the way to it.
 const DISCRIMINANT: f64 = 2.0 * PLACE;
 
@@ -57,9 +57,10 @@ fn sphere_rows() -> Vec<Row> {
     (0..40_000)
         .map(|i| {
             let o = random.direction() * [REACH, 1.01, 0.5, 3.0][i % 4];
-            let limb = random.direction().cross(o).normalize();
-            let aim = [random.direction() * random.unit(), limb, limb * (1.0 - 1e-6), limb * (1.0 + 1e-6)][i / 4 % 4];
-            row(o, (aim - o).normalize() * 10f64.powi(i as i32 / 16 % 7 - 3), NO_CORNERS)
+            // Where a tangent from o meets the plane through the centre; from inside there is none.
+            let limb = random.direction().cross(o).normalize() / (1.0 - 1.0 / o.length_squared()).max(0.1).sqrt();
+            let aim = [random.direction() * random.within(0.0, 1.3), limb, limb * (1.0 - 1e-3), limb * (1.0 + 1e-3)];
+            row(o, (aim[i / 4 % 4] - o).normalize() * 10f64.powi(i as i32 / 16 % 7 - 3), NO_CORNERS)
         })
         .collect()
 }

@@ -134,7 +134,7 @@ fn rasterised_points_deposit_their_whole_flux() {
     let buffer = plan.upload("points", &points);
     let map = plan.image("map", [1024, 1024], Format::R32f, Lifetime::Frame);
     let pass = plan.pass("probe").read("points", buffer).target(map, 0, Some([0.0; 4]), Blend::Add);
-    let draws = vec![Draw { vertices: POINTS as u32, instances: 1, first_instance: 0 }];
+    let draws = vec![Draw { vertices: POINTS as u32, first_vertex: 0, instances: 1, first_instance: 0 }];
     pass.draw(&["probe.vert", "probe.frag"], Topology::Points, draws);
     let mut program = Program::new(&gpu, plan, &sources, &Store::open(), None).expect("prepared");
     program.run(Phase::Frame, &[]).expect("runs");

@@ -88,9 +88,9 @@ fn tracks(scene: &Scene, rays: &[[f32; 6]]) -> Vec<Track> {
 fn rays(scale: f64, shift: DVec3) -> Vec<[f32; 6]> {
     let mut random = Random(70);
     let mut ray = |i: usize| {
-        let mut from = random.direction() * 4.0;
+        let level = random.direction() * DVec3::new(1.0, [0.01, 1.0][i % 2], 1.0);
+        let from = DVec3::new(level.x, level.y.abs(), level.z).normalize() * 4.0;
         let target = DVec3::Y * 0.5 + random.direction() * random.unit() * 1.2;
-        from.y = if i % 4 == 0 { 0.01 * from.y.abs() } else { from.y.abs() };
         let (o, d) = (f32s((from + shift) * scale), f32s((target - from).normalize()));
         [o[0], o[1], o[2], d[0], d[1], d[2]]
     };
