@@ -1,8 +1,8 @@
 // Rays through the scene: a tree over the instances, and one in object space for each mesh.
 //
-// The order is that of obvhs 0.4 (`Bvh2::ray_traverse_dynamic`): the nearer child first. Differs: a child put off
-// is dropped when it comes up if a hit has been found before it. With COUNT_NODES the global `nodes_visited`
-// counts inner nodes opened.
+// The order is that of obvhs 0.4 (`Bvh2::ray_traverse_dynamic`): the nearer child first, leaves before inner nodes.
+// Differs: a child put off is dropped when it comes up if a hit has been found before it. With COUNT_NODES the global
+// `nodes_visited` counts inner nodes opened.
 #ifndef BVH_GLSL
 #define BVH_GLSL
 
@@ -63,8 +63,13 @@ bool test_triangles(uint first, uint count, uint instance, LocalRay ray, inout H
     return found;
 }
 
-// The children of an inner node, the one entered first in front, and where the ray enters them.
-void open_node(uint first, LocalRay ray, out uvec2 children, out vec2 enter) {
+bool is_leaf(uint reference) {
+    return reference >> 28 != 0u;
+}
+
+// The children of an inner node in the order they are gone into, and where the ray enters them: the nearer first, but a
+// leaf before an inner node, since what it holds is soon tested and may hide the other.
+void open_node(uint first, LocalRay ray, float t_max, out uvec2 children, out vec2 enter) {
 #ifdef COUNT_NODES
     nodes_visited++;
 #endif
@@ -72,7 +77,9 @@ void open_node(uint first, LocalRay ray, out uvec2 children, out vec2 enter) {
     Node right = scene_nodes.data[first + 1u];
     enter = vec2(enter_box(ray, left.lo, left.hi), enter_box(ray, right.lo, right.hi));
     children = uvec2(node_reference(left), node_reference(right));
-    if (enter.x > enter.y) {
+    bool leaf_left = is_leaf(children.x) && enter.x < t_max;
+    bool leaf_right = is_leaf(children.y) && enter.y < t_max;
+    if (leaf_left != leaf_right ? leaf_right : enter.x > enter.y) {
         enter = enter.yx;
         children = children.yx;
     }
@@ -128,7 +135,7 @@ bool traverse(vec3 o, vec3 d, float t_max, uint mask, bool any_hit, out Hit hit)
         if (count == 0u) {
             uvec2 children;
             vec2 enter;
-            open_node(first, ray, children, enter);
+            open_node(first, ray, hit.t, children, enter);
             if (enter.y < hit.t && height < TRAVERSAL_STACK) {
                 stack[height] = children.y;
                 stack_enter[height++] = enter.y;

@@ -2,6 +2,7 @@
 
 /// Names the object (or material, or light) at fault and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages name every field
 pub enum AccelError {
     #[error("`{name}`: {what} is {value:e}, beyond the ±{limit:e} that float32 shaders can square; rescale the scene")]
     Range { name: String, what: &'static str, value: f64, limit: f64 },
@@ -9,8 +10,6 @@ pub enum AccelError {
     Flat { name: String },
     #[error("`{name}`: triangle {triangle} of `{file}` names a vertex that the mesh does not have")]
     Vertex { name: String, file: String, triangle: usize },
-    #[error("`{name}`: its tree is {depth} levels deep, the shaders hold {limit}; simplify the mesh `{file}`")]
-    Depth { name: String, file: String, depth: usize, limit: usize },
     #[error("the scene has {count} {what}, the shaders hold {limit}")]
     Count { what: &'static str, count: usize, limit: usize },
 }

@@ -5,9 +5,13 @@ use bytemuck::{Pod, Zeroable};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Node {
+    /// Least corner of the box.
     pub lo: [f32; 3],
+    /// Primitives of a leaf; 0 for an inner node.
     pub count: u32,
+    /// Greatest corner of the box.
     pub hi: [f32; 3],
+    /// First child, or first primitive.
     pub first: u32,
 }
 
@@ -15,8 +19,11 @@ pub struct Node {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Triangle {
+    /// First corner; counter-clockwise from outside.
     pub a: [f32; 3],
+    /// Second corner.
     pub b: [f32; 3],
+    /// Third corner.
     pub c: [f32; 3],
 }
 
@@ -27,9 +34,13 @@ pub type TriangleNormals = Triangle;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Instance {
+    /// World to canonical shape.
     pub to_object: [[f32; 4]; 3],
+    /// Canonical shape to world, m.
     pub to_world: [[f32; 4]; 3],
+    /// One of `SHAPE_*`.
     pub kind: u32,
+    /// Index in [`Scene::materials`](crate::scene::Scene::materials).
     pub material: u32,
     /// Index in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
@@ -37,10 +48,13 @@ pub struct Instance {
     pub root: u32,
 }
 
+/// Of one object or more; a medium's identity is its index.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Material {
+    /// One of `MATERIAL_*`.
     pub kind: u32,
+    /// Index of refraction; 1 for what has none.
     pub ior: f32,
     /// Albedo, or a mirror's reflectance.
     pub colour: [f32; 3],
@@ -48,9 +62,11 @@ pub struct Material {
     pub absorption: [f32; 3],
 }
 
+/// What shines.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Light {
+    /// One of `LIGHT_*`.
     pub kind: u32,
     /// Directional: unit direction of travel; point: position, m.
     pub vector: [f32; 3],
@@ -62,11 +78,17 @@ pub struct Light {
 pub const SHAPE_SPHERE: u32 = 0;
 /// [-1, 1]² in the xy-plane, normal +z.
 pub const SHAPE_QUAD: u32 = 1;
+/// Triangles under a root.
 pub const SHAPE_MESH: u32 = 2;
 
+/// A receiver.
 pub const MATERIAL_DIFFUSE: u32 = 0;
+/// Glass, water.
 pub const MATERIAL_DIELECTRIC: u32 = 1;
+/// Reflects a share.
 pub const MATERIAL_MIRROR: u32 = 2;
 
+/// Parallel light.
 pub const LIGHT_DIRECTIONAL: u32 = 0;
+/// Light from a point.
 pub const LIGHT_POINT: u32 = 1;

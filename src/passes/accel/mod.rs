@@ -12,6 +12,8 @@ use crate::scene::{LightKind, Material as SceneMaterial, MaterialKind, Mesh, Obj
 
 mod error;
 mod layout;
+#[cfg(test)]
+mod tests;
 mod tree;
 
 pub use error::AccelError;
@@ -20,6 +22,10 @@ use tree::{Tree, roomy_box};
 
 /// Levels of both trees together that the shaders' stack holds (`TRAVERSAL_STACK` in `bvh.glsl`).
 pub const TRAVERSAL_STACK: usize = 64;
+/// Levels of the tree over the instances.
+const TOP_LEVELS: usize = 24;
+/// A balanced tree over as many instances needs no more levels than that.
+const MOST_INSTANCES: usize = 1 << (TOP_LEVELS - 1);
 /// Node references keep 28 bits for an index (`node_reference` in `bvh.glsl`).
 const LARGEST_INDEX: usize = (1 << 28) - 1;
 /// Lengths, factors and their inverses up to here can be squared, and boxes' areas summed, within float32.
@@ -32,6 +38,7 @@ pub struct SceneArrays {
     pub nodes: Vec<Node>,
     /// Object units, in the order of the leaves.
     pub triangles: Vec<Triangle>,
+    /// Beside the triangles.
     pub normals: Vec<TriangleNormals>,
     /// In the order of the leaves; an object without triangles has none.
     pub instances: Vec<Instance>,
@@ -51,9 +58,9 @@ impl SceneArrays {
             .enumerate()
             .filter_map(|(i, o)| place(i, o, &mut meshes).transpose())
             .collect::<Result<_, _>>()?;
+        check_count("objects", placed.len(), MOST_INSTANCES)?;
         let boxes: Vec<Aabb> = placed.iter().map(|p| p.bounds).collect();
-        let top = if boxes.is_empty() { nowhere() } else { Tree::over(&boxes) };
-        check_depth(scene, &placed, &meshes, top.depth())?;
+        let top = if boxes.is_empty() { nowhere() } else { Tree::over(&boxes, TOP_LEVELS) };
         let base = top.nodes.len() as u32;
         let instance = |&i: &u32| {
             let p = &placed[i as usize];
@@ -70,8 +77,7 @@ impl SceneArrays {
             materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
             lights: filled(scene.lights.iter().map(light).collect::<Result<_, _>>()?),
         };
-        check_count("nodes", arrays.nodes.len())?;
-        check_count("triangles", arrays.triangles.len())?;
+        check_count("nodes", arrays.nodes.len(), LARGEST_INDEX)?;
         Ok(arrays)
     }
 }
@@ -89,20 +95,8 @@ fn nowhere() -> Tree {
     Tree { nodes: vec![Node { lo: [f32::MAX; 3], count: 1, hi: [f32::MAX; 3], first: 0 }], order: vec![] }
 }
 
-fn check_count(what: &'static str, count: usize) -> Result<(), AccelError> {
-    if count > LARGEST_INDEX { Err(AccelError::Count { what, count, limit: LARGEST_INDEX }) } else { Ok(()) }
-}
-
-fn check_depth(scene: &Scene, placed: &[Placed], meshes: &Meshes, top: usize) -> Result<(), AccelError> {
-    for p in placed {
-        let depth = top + p.mesh.map_or(0, |m| meshes.all[m].depth);
-        if depth > TRAVERSAL_STACK {
-            let object = &scene.objects[p.instance.object as usize];
-            let file = if let Shape::Mesh { mesh, .. } = &object.shape { mesh.file.clone() } else { String::new() };
-            return Err(AccelError::Depth { name: object.name.clone(), file, depth, limit: TRAVERSAL_STACK });
-        }
-    }
-    Ok(())
+fn check_count(what: &'static str, count: usize, limit: usize) -> Result<(), AccelError> {
+    if count > limit { Err(AccelError::Count { what, count, limit }) } else { Ok(()) }
 }
 
 /// The distinct meshes met so far, their trees and their triangles.
@@ -118,7 +112,6 @@ struct Meshes {
 
 struct BuiltMesh {
     tree: Tree,
-    depth: usize,
     /// Counted from the first node of the first mesh.
     root: u32,
     /// First of its triangles.
@@ -131,12 +124,12 @@ impl Meshes {
         if let Some(&known) = self.known.get(&Arc::as_ptr(mesh)) {
             return Ok(known);
         }
-        check_count("triangles", self.triangles.len() + mesh.triangles.len())?;
+        check_count("triangles", self.triangles.len() + mesh.triangles.len(), LARGEST_INDEX)?;
         let corners = (0..mesh.triangles.len()).map(|t| triangle(name, mesh, t)).collect::<Result<Vec<_>, _>>()?;
         let boxes: Vec<Aabb> =
             corners.iter().map(|t| Aabb::from_points(&[t.a.into(), t.b.into(), t.c.into()])).collect();
-        let tree = Tree::over(&boxes);
-        let built = BuiltMesh { depth: tree.depth(), root: self.nodes, triangle: self.triangles.len() as u32, tree };
+        let tree = Tree::over(&boxes, TRAVERSAL_STACK - TOP_LEVELS);
+        let built = BuiltMesh { root: self.nodes, triangle: self.triangles.len() as u32, tree };
         self.nodes += built.tree.nodes.len() as u32;
         self.triangles.extend(built.tree.order.iter().map(|&t| corners[t as usize]));
         self.normals.extend(built.tree.order.iter().map(|&t| corner_normals(mesh, t as usize)));
@@ -196,8 +189,8 @@ fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Pl
         return Err(AccelError::Flat { name: name.clone() });
     }
     let instance = Instance {
-        to_object: rows(name, "the inverse of its size", to_object)?,
         to_world: rows(name, "its place or size", to_world)?,
+        to_object: rows(name, "the inverse of its size", to_object)?,
         kind,
         material: object.material as u32,
         object: index as u32,

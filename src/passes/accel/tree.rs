@@ -14,9 +14,45 @@ pub struct Tree {
 const PARAMS: BvhBuildParams = BvhBuildParams::medium_build();
 const _: () = assert!(PARAMS.max_prims_per_leaf < 16 && !PARAMS.pre_split);
 
+/// Primitives of a leaf of a balanced tree.
+const BALANCED_LEAF: usize = 4;
+
 impl Tree {
-    /// Of at least one box.
-    pub fn over(boxes: &[Aabb]) -> Tree {
+    /// Of at least one box, at most `deepest` levels for up to 2^(deepest − 1) boxes.
+    ///
+    /// Clustering chains equal boxes one by one (n coincident triangles make a tree n deep, no better than a list);
+    /// a tree too deep for the shaders' stack is thrown away for a balanced one.
+    pub fn over(boxes: &[Aabb], deepest: usize) -> Tree {
+        let tree = Tree::clustered(boxes);
+        if tree.depth() <= deepest { tree } else { Tree::balanced(boxes) }
+    }
+
+    /// Halved at the median along the longest side of the centres, down to leaves of a few.
+    fn balanced(boxes: &[Aabb]) -> Tree {
+        let mut tree = Tree { nodes: vec![Node::default()], order: (0..boxes.len() as u32).collect() };
+        let mut open = vec![(0, 0..boxes.len())];
+        while let Some((index, range)) = open.pop() {
+            let of = |&i: &u32| boxes[i as usize];
+            let part = &mut tree.order[range.clone()];
+            let around = part.iter().map(of).reduce(|a, b| a.union(&b)).unwrap_or(Aabb::INVALID);
+            let (count, first) = if part.len() <= BALANCED_LEAF {
+                (part.len() as u32, range.start as u32)
+            } else {
+                let middle = part.len() / 2;
+                let centers = Aabb::from_points(&part.iter().map(|i| of(i).center()).collect::<Vec<_>>());
+                let axis = centers.largest_axis();
+                part.select_nth_unstable_by(middle, |a, b| of(a).center()[axis].total_cmp(&of(b).center()[axis]));
+                let first = tree.nodes.len();
+                open.extend([(first, range.start..range.start + middle), (first + 1, range.start + middle..range.end)]);
+                tree.nodes.extend([Node::default(); 2]);
+                (0, first as u32)
+            };
+            tree.nodes[index] = Node { lo: around.min.into(), count, hi: around.max.into(), first };
+        }
+        tree
+    }
+
+    fn clustered(boxes: &[Aabb]) -> Tree {
         let bvh = build_bvh2(boxes, PARAMS, &mut std::time::Duration::default());
         let node = |node: &obvhs::bvh2::node::Bvh2Node| Node {
             lo: node.aabb().min.into(),
@@ -74,6 +110,7 @@ mod tests {
             let inside = (lo.max(node.lo.into()), hi.min(node.hi.into()));
             if node.count == 0 {
                 open.extend([(node.first as usize, inside), (node.first as usize + 1, inside)]);
+                continue;
             }
             for &p in &tree.order[node.first as usize..][..node.count as usize] {
                 seen[p as usize] += 1;
@@ -88,16 +125,18 @@ mod tests {
     fn leaves_hold_every_primitive_once() {
         for count in [1, 2, 3, 9, 1000] {
             let boxes = boxes(count, |i| (i * 7919 % count) as f32);
-            check(&Tree::over(&boxes), &boxes);
+            check(&Tree::clustered(&boxes), &boxes);
+            check(&Tree::balanced(&boxes), &boxes);
         }
     }
 
     #[test]
     fn equal_boxes_make_no_deep_tree() {
         let same = boxes(5000, |_| 1.0);
-        let tree = Tree::over(&same);
+        assert!(Tree::clustered(&same).depth() > 1000, "clustering has learnt to balance: drop the other builder");
+        let tree = Tree::over(&same, 24);
         check(&tree, &same);
-        assert!(tree.depth() <= 32, "{}", tree.depth());
+        assert_eq!(tree.depth(), 12, "5000 halved down to 4: 11 times");
     }
 
     #[test]
