@@ -6,8 +6,13 @@ pub mod random;
 use bytemuck::{NoUninit, Pod};
 use nephroid::{
     gpu::{Gpu, GpuOptions, Lifetime, Phase, Plan, Program, Resource, Sources},
+    methods,
+    renderer::{self, Job, Providers},
+    scene::Scene,
+    settings::Settings,
     store::Store,
 };
+use std::sync::Arc;
 
 /// Invocations a work group of a probe.
 const GROUP: u32 = 64;
@@ -89,4 +94,20 @@ impl Probe<'_> {
     pub fn run<I: NoUninit, O: Pod>(&self, gpu: &Gpu, inputs: &[I]) -> Vec<O> {
         self.run_with(gpu, inputs, |_| Vec::new())
     }
+}
+
+/// A job for a shipped scene or file with method `maps`; settings by name, `scene.` among them.
+pub fn job(scene: &str, set: &[(&str, &str)], camera: &str, size: [u32; 2]) -> Job {
+    let known = renderer::all_settings();
+    let mut settings = Settings::default();
+    let mut overrides = Vec::new();
+    for (key, value) in set {
+        match key.strip_prefix("scene.") {
+            Some(path) => overrides.push((path.to_owned(), value.to_string())),
+            None => settings.set(&known, key, value).expect("the test names a setting"),
+        }
+    }
+    let scene = Scene::load(scene, &overrides).unwrap_or_else(|e| panic!("{scene}: {e}"));
+    let maps = methods::find("maps").expect("the method is in the table");
+    Job { scene: Arc::new(scene), providers: Providers::of(maps), settings, camera: camera.into(), size }
 }
