@@ -1,12 +1,25 @@
 //! Nephroid: real-time caustics methods on one set of scenes, lights and units; what each costs, and how wrong it is.
+//!
+//! The house, bottom to top; a room imports only from floors below it.
+//!
+//! | floor | rooms |
+//! |---|---|
+//! | 0, no Vulkan, float64 | [`optics`], [`view`], [`image`], [`whole`], [`stats`], [`store`], [`settings`], [`scene`] |
+//! | 1, the only unsafe code | [`gpu`]: device, memory, barriers, shaders, pipelines, plans, programs, timers |
+//! | 2, what methods share | [`passes`]: the scene on the device, lights and photons, the eye |
+//! | 3 | [`methods`]: a room per paper; [`truth`]: float64, sharing no code with floors 1 to 3 |
+//! | 4 | [`renderer`]: plan → prepare → frame → read |
 
 pub mod gpu;
 pub mod image;
+pub mod methods;
 pub mod optics;
+pub mod passes;
+pub mod renderer;
+pub mod scene;
 pub mod settings;
 pub mod stats;
 pub mod store;
-pub mod view;
 pub mod truth;
+pub mod view;
 pub mod whole;
-pub mod scene;

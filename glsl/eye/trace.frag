@@ -10,7 +10,11 @@
 #include "provider.glsl"
 
 layout(location = 0) out vec4 direct;
+#ifdef CAUSTIC
 layout(location = 1) out vec4 caustic;
+#else
+vec4 caustic; // no provider: nothing to write
+#endif
 
 const float PI = 3.14159265358979;
 const float FAR = 3.0e38;

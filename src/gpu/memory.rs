@@ -23,6 +23,8 @@ pub enum Format {
     Rgba32f,
     /// Four float16.
     Rgba16f,
+    /// Two indices and two float32 bit patterns.
+    Rgba32u,
     /// One float32.
     R32f,
     /// Float32 depth.
@@ -33,7 +35,7 @@ impl Format {
     /// Bytes a texel.
     pub fn bytes(self) -> u64 {
         match self {
-            Self::Rgba32f => 16,
+            Self::Rgba32f | Self::Rgba32u => 16,
             Self::Rgba16f => 8,
             Self::R32f | Self::Depth32f => 4,
         }
@@ -44,6 +46,7 @@ impl Format {
         match self {
             Self::Rgba32f => "rgba32f",
             Self::Rgba16f => "rgba16f",
+            Self::Rgba32u => "rgba32ui",
             Self::R32f => "r32f",
             Self::Depth32f => "depth32f",
         }
@@ -52,7 +55,7 @@ impl Format {
     /// Channels a texel.
     pub fn channels(self) -> u32 {
         match self {
-            Self::Rgba32f | Self::Rgba16f => 4,
+            Self::Rgba32f | Self::Rgba16f | Self::Rgba32u => 4,
             Self::R32f | Self::Depth32f => 1,
         }
     }
@@ -61,6 +64,7 @@ impl Format {
         match self {
             Self::Rgba32f => vk::Format::R32G32B32A32_SFLOAT,
             Self::Rgba16f => vk::Format::R16G16B16A16_SFLOAT,
+            Self::Rgba32u => vk::Format::R32G32B32A32_UINT,
             Self::R32f => vk::Format::R32_SFLOAT,
             Self::Depth32f => vk::Format::D32_SFLOAT,
         }

@@ -136,6 +136,8 @@ pub enum Topology {
 pub struct Draw {
     /// Vertices.
     pub vertices: u32,
+    /// `gl_VertexIndex` of the first vertex.
+    pub first_vertex: u32,
     /// Instances.
     pub instances: u32,
     /// `gl_InstanceIndex` of the first instance.
@@ -285,6 +287,11 @@ impl Plan {
         }
     }
 
+    /// Width and height of an image.
+    pub fn image_extent(&self, image: ImageId) -> [u32; 2] {
+        self.images[image.0].extent
+    }
+
     /// Bytes of all buffers and images.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(|b| b.bytes).sum::<u64>() + self.images.iter().map(ImageDecl::bytes).sum::<u64>()
@@ -329,14 +336,17 @@ impl PassBuilder<'_> {
         self.bind(name, Resource::Buffer(buffer), Access::GraphicsRead)
     }
 
-    /// Several buffers read under the names they are paired with.
-    pub fn read_all<'n>(self, buffers: impl IntoIterator<Item = (&'n str, BufferId)>) -> Self {
-        buffers.into_iter().fold(self, |pass, (name, buffer)| pass.read(name, buffer))
-    }
-
     /// A storage buffer written by a compute shader.
     pub fn write(self, name: &str, buffer: BufferId) -> Self {
         self.bind(name, Resource::Buffer(buffer), Access::ComputeWrite)
+    }
+
+    /// Resources under the names they are paired with, buffers read and images fetched.
+    pub fn with<'n>(self, resources: impl IntoIterator<Item = (&'n str, Resource)>) -> Self {
+        resources.into_iter().fold(self, |pass, (name, resource)| match resource {
+            Resource::Buffer(buffer) => pass.read(name, buffer),
+            Resource::Image(image) => pass.fetch(name, image),
+        })
     }
 
     /// An image fetched texel by texel.
@@ -406,7 +416,7 @@ impl PassBuilder<'_> {
 
     /// Ends the sentence with one triangle that covers the targets.
     pub fn screen(self, fragment: &str) {
-        let draws = vec![Draw { vertices: 3, instances: 1, first_instance: 0 }];
+        let draws = vec![Draw { vertices: 3, first_vertex: 0, instances: 1, first_instance: 0 }];
         self.draw(&["passes/screen.vert", fragment], Topology::Triangles, draws);
     }
 }

@@ -262,11 +262,20 @@ impl Program {
         })?;
         self.shared.calls.reads.fetch_add(1, Relaxed);
         let memory = staging.mapped().unwrap_or_default().get(..bytes as usize).unwrap_or_default();
+        let word = |b: &[u8]| u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
         Ok(match image.format {
+            // The indices as numbers, the float32 as what they are.
+            Format::Rgba32u => memory
+                .chunks_exact(16)
+                .flat_map(|t| {
+                    let [a, b, u, v] = [0, 4, 8, 12].map(|at| word(&t[at..at + 4]));
+                    [a as f32, b as f32, f32::from_bits(u), f32::from_bits(v)]
+                })
+                .collect(),
             Format::Rgba16f => {
                 memory.chunks_exact(2).map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()).collect()
             }
-            _ => memory.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect(),
+            _ => memory.chunks_exact(4).map(|b| f32::from_bits(word(b))).collect(),
         })
     }
 

@@ -67,6 +67,9 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
         label(program, commands, Some(&pass.name));
         resource_barriers(program, pass);
         timer.stamp(commands, 2 * slot);
+        if program.shared.info.is_software() {
+            settle(device, commands);
+        }
         if counts {
             timer.begin_counting(commands, slot);
         }
@@ -82,6 +85,18 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
         timer.stamp(commands, 2 * slot + 1);
         label(program, commands, None);
     }
+}
+
+/// Lets the timestamp before a pass take effect before the pass: a software rasteriser bins timestamps with its draws,
+/// while its dispatches run at once, so that a dispatch would be charged to the pass after it.
+///
+/// # Safety
+/// The command buffer is recording, outside rendering.
+unsafe fn settle(device: &ash::Device, commands: vk::CommandBuffer) {
+    let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+    let barrier = [vk::MemoryBarrier2::default().src_stage_mask(all).dst_stage_mask(all)];
+    // SAFETY: promised by the caller.
+    unsafe { device.cmd_pipeline_barrier2(commands, &vk::DependencyInfo::default().memory_barriers(&barrier)) }
 }
 
 /// # Safety
@@ -210,7 +225,7 @@ unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[
         device.cmd_set_viewport(commands, 0, &[viewport]);
         device.cmd_set_scissor(commands, 0, &[area]);
         for d in draws {
-            device.cmd_draw(commands, d.vertices, d.instances, 0, d.first_instance);
+            device.cmd_draw(commands, d.vertices, d.instances, d.first_vertex, d.first_instance);
         }
         device.cmd_end_rendering(commands);
     }

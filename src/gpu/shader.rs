@@ -7,7 +7,7 @@ use shaderc::{
 use std::collections::BTreeMap;
 
 use super::error::GpuError;
-use crate::store::Store;
+use crate::store::{Key, Store};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
 
@@ -87,8 +87,7 @@ impl Sources {
             return Ok(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect());
         }
         let words = self.translate(file, kind, source, defines, provided).map_err(fail)?;
-        // A store that cannot be written costs time at the next start, no more.
-        let _ = store.put(STORE_KIND, &key, bytemuck::cast_slice(&words));
+        store.put(STORE_KIND, &key, bytemuck::cast_slice(&words));
         Ok(words)
     }
 
@@ -120,23 +119,23 @@ impl Sources {
     }
 
     /// What the SPIR-V depends on: every GLSL file (an include may reach any of them), the defines, this build.
-    fn key(&self, file: &str, defines: &[(String, String)], provided: &[(String, String)]) -> String {
-        let mut hash = blake3::Hasher::new();
-        hash_folder(&EMBEDDED, &mut hash);
-        let replaced = self.replaced.iter().map(|(a, b)| (a.as_str(), b.as_str()));
-        let pairs = defines.iter().chain(provided).map(|(a, b)| (a.as_str(), b.as_str()));
-        for (a, b) in replaced.chain(pairs).chain([(file, env!("CARGO_PKG_VERSION"))]) {
-            hash.update(a.as_bytes()).update(b"\0").update(b.as_bytes()).update(b"\0");
+    fn key(&self, file: &str, defines: &[(String, String)], provided: &[(String, String)]) -> Key {
+        let mut inputs: Vec<&[u8]> = vec![file.as_bytes(), env!("CARGO_PKG_VERSION").as_bytes()];
+        embedded(&EMBEDDED, &mut inputs);
+        for (a, b) in
+            self.replaced.iter().map(|(a, b)| (a, b)).chain(defines.iter().chain(provided).map(|(a, b)| (a, b)))
+        {
+            inputs.extend([a.as_bytes(), b.as_bytes()]);
         }
-        hash.finalize().to_hex().to_string()
+        Key::of(inputs)
     }
 }
 
-fn hash_folder(folder: &Dir<'_>, hash: &mut blake3::Hasher) {
+fn embedded<'d>(folder: &'d Dir<'_>, inputs: &mut Vec<&'d [u8]>) {
     for file in folder.files() {
-        hash.update(file.path().as_os_str().as_encoded_bytes()).update(file.contents());
+        inputs.extend([file.path().as_os_str().as_encoded_bytes(), file.contents()]);
     }
     for inner in folder.dirs() {
-        hash_folder(inner, hash);
+        embedded(inner, inputs);
     }
 }

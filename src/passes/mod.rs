@@ -1,3 +1,11 @@
-//! Floor 2: rooms that several methods share.
+//! Floor 2: rooms that several methods share: the scene on the device, light views and photons, the eye, compose.
 
 pub mod accel;
+pub mod account;
+mod error;
+pub mod extents;
+pub mod eye;
+pub mod light;
+pub mod scene;
+
+pub use error::PlanError;

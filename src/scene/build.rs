@@ -20,7 +20,7 @@ const FIELDS: std::ops::RangeInclusive<f64> = 0.001..=179.9;
 
 /// Checks every value and resolves every name; `source` still lacks its hash.
 pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &Files) -> Result<Scene, SceneError> {
-    let unit = root.key("unit").number(file.unit, 1e-9..=1e9, "metres per unit of length")?;
+    let unit = root.key("unit").number(file.unit, 1e-9..=1e9, "metres per unit of length", "1 means metres")?;
     let materials = each(root, "materials", &file.materials, |key, name, written| {
         Ok(Material { name, kind: material(key, written)? })
     })?;
@@ -41,7 +41,12 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
         })?,
         region,
         extent,
-        exposure: root.key("exposure").number(file.exposure, -64.0..=64.0, "an exposure in EV")?,
+        exposure: root.key("exposure").number(
+            file.exposure,
+            -64.0..=64.0,
+            "an exposure in EV",
+            "0 is plain, each EV doubles",
+        )?,
         cameras: cameras(&root.key("cameras"), &file.cameras, unit)?,
         objects,
         materials,
@@ -70,7 +75,12 @@ fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> 
         (None, Some(dielectric), None) => {
             let key = key.key("dielectric");
             Ok(MaterialKind::Dielectric {
-                ior: key.key("ior").number(dielectric.ior, INDICES, "an index of refraction")?,
+                ior: key.key("ior").number(
+                    dielectric.ior,
+                    INDICES,
+                    "an index of refraction",
+                    "glass has about 1.5, water 1.33",
+                )?,
                 absorption: key.key("absorption").strength(dielectric.absorption, "an absorption in 1/m")?,
             })
         }
@@ -78,7 +88,7 @@ fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> 
             let reflectance = key.key("mirror").key("reflectance").share(mirror.reflectance)?;
             Ok(MaterialKind::Mirror { reflectance })
         }
-        _ => Err(key.one_kind("diffuse, dielectric or mirror")),
+        _ => Err(key.one_kind(&["diffuse", "dielectric", "mirror"])),
     }
 }
 
@@ -98,7 +108,7 @@ fn light(key: &Key, file: &LightFile, unit: f64) -> Result<LightKind, SceneError
                 intensity: key.key("intensity").strength(point.intensity, "an intensity in W/sr")?,
             })
         }
-        _ => Err(key.one_kind("directional or point")),
+        _ => Err(key.one_kind(&["directional", "point"])),
     }
 }
 
@@ -114,7 +124,9 @@ fn camera(key: &Key, file: &CameraFile, unit: f64) -> Result<Camera, SceneError>
     match (&file.pinhole, &file.orthographic) {
         (Some(c), None) => {
             let key = key.key("pinhole");
-            let kind = CameraKind::Pinhole { fov_y: key.key("fov_y").number(c.fov_y, FIELDS, "degrees")? };
+            let kind = CameraKind::Pinhole {
+                fov_y: key.key("fov_y").number(c.fov_y, FIELDS, "a field of view in degrees", "40 is usual")?,
+            };
             aimed(&key, kind, [c.position, c.target, c.up], unit, c.hides_specular)
         }
         (None, Some(c)) => {
@@ -129,7 +141,7 @@ fn camera(key: &Key, file: &CameraFile, unit: f64) -> Result<Camera, SceneError>
                 c.hides_specular,
             )
         }
-        _ => Err(key.one_kind("pinhole or orthographic")),
+        _ => Err(key.one_kind(&["pinhole", "orthographic"])),
     }
 }
 

@@ -5,11 +5,15 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {}expected {expected}, found {found}; {remedy}", quoted(.key))]
 pub struct SceneError {
+    /// Where it was written.
     pub place: Box<Place>,
     /// Dotted path of the key; empty where the fault has none.
     pub key: String,
+    /// What should stand there.
     pub expected: String,
+    /// What stands there.
     pub found: String,
+    /// What to do about it, near names among them.
     pub remedy: String,
 }
 
@@ -22,10 +26,24 @@ fn quoted(key: &str) -> String {
 pub enum Place {
     /// The scene as a whole: it could not be found or read.
     Scene(String),
-    /// Line and column count from 1, columns in characters.
-    File { file: String, line: usize, column: usize },
+    /// A place in a file.
+    File {
+        /// As the user named it.
+        file: String,
+        /// From 1.
+        line: usize,
+        /// From 1, in characters.
+        column: usize,
+    },
     /// An override, as it would be typed.
-    Override { file: String, key: String, value: String },
+    Override {
+        /// The scene file it was set in.
+        file: String,
+        /// Without the `scene.` prefix.
+        key: String,
+        /// As given.
+        value: String,
+    },
 }
 
 impl fmt::Display for Place {

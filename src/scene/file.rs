@@ -3,7 +3,7 @@ use std::{collections::BTreeMap, fmt};
 
 use serde::{
     Deserialize, Deserializer,
-    de::{Error, IgnoredAny, SeqAccess, Visitor},
+    de::{Error, IgnoredAny, SeqAccess, Unexpected, Visitor},
 };
 
 /// The one version there is.
@@ -213,7 +213,7 @@ impl<'de, const N: usize> Visitor<'de> for Numbers<N> {
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
-        if self.single { Ok([value; N]) } else { Err(E::invalid_type(serde::de::Unexpected::Float(value), &self)) }
+        if self.single { Ok([value; N]) } else { Err(E::invalid_type(Unexpected::Other("one number"), &self)) }
     }
 
     fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {

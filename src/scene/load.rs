@@ -177,29 +177,33 @@ fn misfit(locator: &Locator, error: &toml::de::Error) -> SceneError {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let (key, expected, found, remedy) = if message.starts_with("missing field") {
         let name = quoted.first().copied().unwrap_or_default();
-        (at(name), format!("the key `{name}`"), "none".to_owned(), format!("add `{name} = …`"))
+        let remedy = "add it; the shipped scenes show how";
+        (at(name), format!("the key `{name}`"), "none".to_owned(), remedy.to_owned())
     } else if message.starts_with("unknown field") {
         let (name, known) = quoted.split_first().map_or(("", &quoted[..]), |(name, known)| (*name, known));
         let expected = format!("one of {}", known.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>().join(", "));
         (at(name), expected, format!("the unknown key `{name}`"), near(name, known.iter().copied()))
     } else if let Some((found, expected)) = message.split_once(", expected ") {
+        let (expected, remedy) = plain(expected);
         let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
-        (path.to_owned(), plain(expected), plain(found.trim_start_matches("invalid ")), "change the value".to_owned())
+        (path.to_owned(), expected.to_owned(), found.replace("invalid length", "an array of"), remedy.to_owned())
     } else {
-        (path.to_owned(), "a value that fits".to_owned(), message.to_owned(), "change the value".to_owned())
+        let remedy = "write one that double precision can hold";
+        (path.to_owned(), "a number in range".to_owned(), message.to_owned(), remedy.to_owned())
     };
     let place = Box::new(locator.place(error.span().unwrap_or(0..0)));
     SceneError { place, key, expected, found, remedy }
 }
 
-/// Rust's names of types, in the reader's words.
-fn plain(phrase: &str) -> String {
-    match phrase {
-        "f64" => "a number".to_owned(),
-        "i64" => "an integer".to_owned(),
-        "map" | "a map" => "a table".to_owned(),
-        "sequence" => "an array".to_owned(),
-        _ if phrase.starts_with("struct ") => "a table".to_owned(),
-        _ => phrase.to_owned(),
+/// What Rust expected in the reader's words, and how to write it.
+fn plain(expected: &str) -> (&str, &str) {
+    match expected {
+        "f64" => ("a number", "write a number, without quotes"),
+        "a string" => ("a string", "put the text in quotes"),
+        "a boolean" => ("true or false", "write true or false, without quotes"),
+        "an array of 2 numbers" => (expected, "write `[along u, along v]`"),
+        "an array of 3 numbers" => (expected, "write `[x, y, z]`"),
+        _ if expected.contains("number") => (expected, "write one number, or `[red, green, blue]`"),
+        _ => ("a table", "write its keys below a `[header]`, as the shipped scenes do"),
     }
 }

@@ -86,9 +86,19 @@ impl<'a> Key<'a> {
         }
     }
 
-    /// A table that must hold exactly one of these.
-    pub fn one_kind(&self, kinds: &str) -> SceneError {
-        self.fault(format!("exactly one table of {kinds}"), "none or several", "leave one")
+    /// A table that should hold exactly one of these, and does not.
+    pub fn one_kind(&self, kinds: &[&str]) -> SceneError {
+        let mut table = Some(&self.locator.tree);
+        for name in self.path.split('.') {
+            table = table.and_then(|table| table.get(name)?.get_ref().as_table());
+        }
+        let held: Vec<&str> =
+            kinds.iter().copied().filter(|kind| table.is_some_and(|t| t.contains_key(*kind))).collect();
+        let (found, remedy) = match held.as_slice() {
+            [] => ("none".to_owned(), format!("add `[{}.{}]`, or another of them", self.path, kinds[0])),
+            several => (several.join(" and "), "keep one of them".to_owned()),
+        };
+        self.fault(format!("exactly one kind of {}", kinds.join(", ")), found, remedy)
     }
 
     /// A name that must be one of `names`.

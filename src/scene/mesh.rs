@@ -32,7 +32,7 @@ pub fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     sums.into_iter().zip(firsts).map(unit).map(|n| n.as_vec3()).collect()
 }
 
-/// Radians: a sum of opposite normals leaves rounding of about 1e-15, a real vertex more than any mesh's thinnest angle.
+/// Radians: opposite normals leave rounding of about 1e-15; a real vertex more than the thinnest angle of a mesh.
 const CANCELLED: f64 = 1e-9;
 
 #[cfg(test)]

@@ -6,11 +6,12 @@
 //! A closed dielectric shape holds its medium inside. A dielectric quad is an open interface: its medium lies on the
 //! side its normal points away from (flat water under the air). A material *is* the identity of its medium: where two
 //! shapes of one material touch there is no interface, and nested dielectrics can be told apart.
-use std::{collections::BTreeMap, fmt, str::FromStr, sync::Arc};
+use std::{collections::BTreeMap, sync::Arc};
 
 use glam::{DAffine3, DVec3, Vec3};
 
 mod build;
+mod class;
 mod error;
 mod file;
 mod load;
@@ -23,6 +24,7 @@ mod overrides;
 mod patch;
 mod shipped;
 
+pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.
@@ -30,8 +32,11 @@ pub use error::{Place, SceneError};
 pub struct Scene {
     /// Shipped name or file stem.
     pub name: String,
+    /// One line for lists and reports.
     pub title: String,
+    /// Where the scene came from.
     pub source: Source,
+    /// What counts as this scene's caustic.
     pub paths: PathClass,
     /// Where errors are judged.
     pub region: Region,
@@ -64,63 +69,16 @@ pub struct Source {
     pub hash: String,
 }
 
-/// Which specular chains between light and receiver count as the caustic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PathClass {
-    /// One mirror bounce.
-    Reflect1,
-    /// Through one surface: into water.
-    Transmit1,
-    /// Through two surfaces: into and out of glass.
-    Transmit2,
-    /// Every chain of 1 to this many specular events.
-    All(u32),
-}
-
-impl PathClass {
-    /// Longest chain that [`PathClass::All`] may name.
-    pub const LONGEST: u32 = 64;
-}
-
-impl fmt::Display for PathClass {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            PathClass::Reflect1 => f.write_str("reflect-1"),
-            PathClass::Transmit1 => f.write_str("transmit-1"),
-            PathClass::Transmit2 => f.write_str("transmit-2"),
-            PathClass::All(events) => write!(f, "all:{events}"),
-        }
-    }
-}
-
-/// Why a text is no [`PathClass`].
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no path class: use reflect-1, transmit-1, transmit-2 or all:N with N from 1 to 64")]
-pub struct PathClassError(pub String);
-
-impl FromStr for PathClass {
-    type Err = PathClassError;
-
-    fn from_str(text: &str) -> Result<PathClass, PathClassError> {
-        let events = |n: &str| n.parse().ok().filter(|n| (1..=PathClass::LONGEST).contains(n));
-        match text {
-            "reflect-1" => Some(PathClass::Reflect1),
-            "transmit-1" => Some(PathClass::Transmit1),
-            "transmit-2" => Some(PathClass::Transmit2),
-            _ => text.strip_prefix("all:").and_then(events).map(PathClass::All),
-        }
-        .ok_or_else(|| PathClassError(text.to_owned()))
-    }
-}
-
 /// A rectangle on a receiver.
 #[derive(Clone, Debug)]
 pub struct Region {
     /// Index into [`Scene::objects`]: a diffuse quad.
     pub receiver: usize,
+    /// m
     pub center: DVec3,
-    /// Half edges, m, at right angles.
+    /// Half edge, m.
     pub u: DVec3,
+    /// Half edge, m, at right angles to `u`.
     pub v: DVec3,
 }
 
@@ -136,9 +94,12 @@ impl Region {
     }
 }
 
+/// A shape and what it is made of.
 #[derive(Clone, Debug)]
 pub struct Object {
+    /// As in the file.
     pub name: String,
+    /// In the world, metres.
     pub shape: Shape,
     /// Index into [`Scene::materials`].
     pub material: usize,
@@ -146,14 +107,32 @@ pub struct Object {
     pub visible_to_camera: bool,
 }
 
+/// A surface, in metres.
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// Exact; never tessellated for tracing.
-    Sphere { center: DVec3, radius: f64 },
-    /// Half edges `u`, `v` at right angles; the normal u × v points to the lit side.
-    Quad { center: DVec3, u: DVec3, v: DVec3 },
-    /// `to_world` scales evenly, turns and moves.
-    Mesh { mesh: Arc<Mesh>, to_world: DAffine3 },
+    Sphere {
+        /// m
+        center: DVec3,
+        /// m, above zero.
+        radius: f64,
+    },
+    /// A rectangle; its normal u × v points to the lit side.
+    Quad {
+        /// m
+        center: DVec3,
+        /// Half edge, m.
+        u: DVec3,
+        /// Half edge, m, at right angles to `u`.
+        v: DVec3,
+    },
+    /// Triangles.
+    Mesh {
+        /// Shared by the objects that name the same file.
+        mesh: Arc<Mesh>,
+        /// Scales evenly, turns and moves.
+        to_world: DAffine3,
+    },
 }
 
 impl Shape {
@@ -175,71 +154,110 @@ impl Shape {
 pub struct Mesh {
     /// As the scene names it.
     pub file: String,
+    /// In the file's own units.
     pub positions: Vec<Vec3>,
     /// Unit vectors, one a vertex: the file's, or the angle-weighted mean of the triangles about the vertex.
     pub normals: Vec<Vec3>,
+    /// Indices of the vertices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// What a surface does to light, and which medium it bounds.
 #[derive(Clone, Debug)]
 pub struct Material {
+    /// As in the file.
     pub name: String,
+    /// What it does to light.
     pub kind: MaterialKind,
 }
 
+/// Colours are one number for each of the three bands.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
-    /// Lambertian; the first one a path meets is its receiver.
+    /// Lambertian; the first one that a path meets is its receiver.
     Diffuse {
+        /// Share of the flux sent back, 0 to 1.
         albedo: [f64; 3],
     },
-    /// Smooth; `absorption` in 1/m.
+    /// Smooth and clear.
     Dielectric {
+        /// Index of refraction against vacuum.
         ior: f64,
+        /// 1/m
         absorption: [f64; 3],
     },
+    /// Smooth and opaque.
     Mirror {
+        /// Share of the flux reflected, 0 to 1, at every angle.
         reflectance: [f64; 3],
     },
 }
 
 impl Material {
+    /// Whether it refracts or reflects without scattering.
     pub fn is_specular(&self) -> bool {
         !matches!(self.kind, MaterialKind::Diffuse { .. })
     }
 }
 
+/// A source without size.
 #[derive(Clone, Debug)]
 pub struct Light {
+    /// As in the file.
     pub name: String,
+    /// Where its light comes from.
     pub kind: LightKind,
 }
 
+/// Colours are one number for each of the three bands.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
-    /// Unit `direction` of travel; `irradiance` in W/m² on a plane that faces the light.
-    Directional { direction: DVec3, irradiance: [f64; 3] },
-    /// `intensity` in W/sr, the same in every direction.
-    Point { position: DVec3, intensity: [f64; 3] },
+    /// Parallel light.
+    Directional {
+        /// Unit vector along which the light travels.
+        direction: DVec3,
+        /// W/m² on a plane that faces the light.
+        irradiance: [f64; 3],
+    },
+    /// The same in every direction.
+    Point {
+        /// m
+        position: DVec3,
+        /// W/sr
+        intensity: [f64; 3],
+    },
 }
 
 /// Looks along its own −Z, from `position` to `target`; `up` need not be perpendicular.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
+    /// How rays leave it.
     pub kind: CameraKind,
+    /// m
     pub position: DVec3,
+    /// A point on its axis, m.
     pub target: DVec3,
+    /// Unit vector, upright in the picture.
     pub up: DVec3,
     /// Leaves out every specular object, so that the receiver is seen bare.
     pub hides_specular: bool,
 }
 
+/// How a camera's rays leave it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraKind {
-    /// Whole vertical field of view, degrees.
-    Pinhole { fov_y: f64 },
-    /// Metres seen from edge to edge; without a width it follows from the picture's shape.
-    Orthographic { height: f64, width: Option<f64> },
+    /// From one point.
+    Pinhole {
+        /// Whole vertical field of view, degrees.
+        fov_y: f64,
+    },
+    /// Along its axis.
+    Orthographic {
+        /// From the lower to the upper edge, m.
+        height: f64,
+        /// From edge to edge, m; without it, it follows from the picture's shape.
+        width: Option<f64>,
+    },
 }
 
 impl Scene {

@@ -35,7 +35,7 @@ pub fn object(
         }
         (None, Some(written), None) => quad(&key.key("quad"), written, unit)?,
         (None, None, Some(written)) => mesh(&key.key("mesh"), written, unit, meshes)?,
-        _ => return Err(key.one_kind("sphere, quad or mesh")),
+        _ => return Err(key.one_kind(&["sphere", "quad", "mesh"])),
     };
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
 }
@@ -58,16 +58,19 @@ fn mesh(key: &Key, file: &MeshFile, unit: f64, meshes: &mut Meshes) -> Result<Sh
     let fit = key.key("fit").size(file.fit, unit)?;
     let center = key.key("center").point(file.center, unit)?;
     for angle in file.rotate.0 {
-        key.key("rotate").number(angle, -360.0..=360.0, "degrees")?;
+        key.key("rotate").number(angle, -360.0..=360.0, "degrees", "a full turn is 360")?;
     }
     let side = mesh.bounds(|p| p).map_or(0.0, |[low, high]| (high - low).max_element());
     // A mesh of one point, or of none, has no size to fit.
-    let scale =
-        if side == 0.0 { unit } else { fit / key.key("file").number(side, SIDES, "a mesh with a largest side")? };
+    let scale = if side == 0.0 { unit } else { fit / usable_side(key, side)? };
     let [x, y, z] = file.rotate.0.map(f64::to_radians);
     let linear = DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x)) * scale;
     let base = mesh.bounds(|p| linear * p).map_or(DVec3::ZERO, |[low, high]| (0.5 * (low + high)).with_y(low.y));
     Ok(Shape::Mesh { mesh, to_world: DAffine3::from_mat3_translation(linear, center - base) })
+}
+
+fn usable_side(key: &Key, side: f64) -> Result<f64, SceneError> {
+    key.key("file").number(side, SIDES, "a mesh with a largest side", "scale the mesh in its file")
 }
 
 /// The meshes read so far, each once, and the hash over the scene and their bytes.

@@ -1,11 +1,12 @@
 //! Shared by the integration tests: a validated device, and shader probes that run shipped GLSL on lists of inputs.
 #![allow(dead_code)] // each test binary uses its own part
 
+pub mod cpu;
 pub mod random;
 
 use bytemuck::{NoUninit, Pod};
 use nephroid::{
-    gpu::{BufferId, Gpu, GpuOptions, Lifetime, Phase, Plan, Program, Sources},
+    gpu::{Gpu, GpuOptions, Lifetime, Phase, Plan, Program, Resource, Sources},
     store::Store,
 };
 
@@ -52,7 +53,7 @@ impl Probe<'_> {
         &self,
         gpu: &Gpu,
         inputs: &[I],
-        scene: impl FnOnce(&mut Plan) -> Vec<(&'static str, BufferId)>,
+        scene: impl FnOnce(&mut Plan) -> Vec<(&'static str, Resource)>,
     ) -> Vec<O> {
         let includes: String = self.includes.iter().map(|i| format!("#include \"{i}\"\n")).collect();
         let text = format!(
@@ -76,7 +77,7 @@ impl Probe<'_> {
         let to = plan.buffer("outputs", bytes, Lifetime::Frame);
         let count = inputs.len() as u32;
         let pass = plan.pass("probe").read("probe_inputs", from).write("probe_outputs", to).push(&count);
-        let pass = self.defines.iter().fold(pass.read_all(extra), |pass, (name, value)| pass.define(name, value));
+        let pass = self.defines.iter().fold(pass.with(extra), |pass, (name, value)| pass.define(name, value));
         pass.dispatch("probe.comp", [count.div_ceil(GROUP).max(1), 1, 1], GROUP);
         let mut program = Program::new(gpu, plan, &sources, &Store::open(), None).expect("the probe is prepared");
         program.run(Phase::Frame, &[]).expect("the probe runs");

@@ -1,0 +1,160 @@
+#![doc = include_str!("README.md")]
+//! Based on: C. Wyman, *Hierarchical Caustic Maps*, I3D 2008. Differs: exact tracer, own receiving view, weights that
+//! sum to one. Not implemented: its gathers `copy`, `hierarchical`, `combine` and `varying`.
+
+use super::{Job, Method, Planned, Provided, Slot};
+use crate::{
+    gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, Resource, Topology},
+    passes::{
+        PlanError,
+        eye::SurfaceProvider,
+        light::{self, Column},
+    },
+    settings::{Choice, Setting, Whole},
+    view::View,
+};
+
+static SIDE: Whole = Whole {
+    key: "maps.side",
+    unit: "texels",
+    default: 512,
+    range: 1..=16384,
+    doc: "texels along each side of the caustic map",
+};
+
+static SPLAT_SIZE: Whole = Whole {
+    key: "maps.splat_size",
+    unit: "texels",
+    default: 3,
+    range: 1..=63,
+    doc: "diameter of a photon's Gaussian splat; its standard deviation is a quarter of it",
+};
+
+static GATHER: Choice = Choice {
+    key: "maps.gather",
+    default: "fetch",
+    words: &["fetch"],
+    doc: "fetch: an instanced draw over the photons, without a copy (section 4)",
+};
+
+static SETTINGS: &[Setting] = &[Setting::Whole(&SIDE), Setting::Whole(&SPLAT_SIZE), Setting::Choice(&GATHER)];
+
+/// Hierarchical caustic maps.
+pub struct Maps;
+
+impl Method for Maps {
+    fn name(&self) -> &'static str {
+        "maps"
+    }
+
+    fn title(&self) -> &'static str {
+        "photons splatted into a caustic map that is projected on the receivers"
+    }
+
+    fn paper(&self) -> &'static str {
+        "C. Wyman, Hierarchical Caustic Maps, I3D 2008"
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::Surface]
+    }
+
+    fn needs(&self) -> &'static [Feature] {
+        &[Feature::Float32Blend, Feature::LargePoints]
+    }
+
+    fn settings(&self) -> &'static [Setting] {
+        SETTINGS
+    }
+
+    fn columns(&self) -> &'static [Column] {
+        &[Column::Hit, Column::Flux]
+    }
+
+    fn stages(&self) -> &'static [&'static str] {
+        &["maps/gather"]
+    }
+
+    fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
+        let side = job.settings.whole(&SIDE);
+        let diameter = job.settings.whole(&SPLAT_SIZE);
+        let views = receiving_views(job, side, diameter);
+        let layers = views.len() as u32;
+        let data: Vec<_> = views.iter().map(View::data).collect();
+        Ok(Box::new(PlannedMaps {
+            side,
+            diameter,
+            layers,
+            map: job.plan.image_array("maps/map", [side, side], layers, Format::Rgba32f, Lifetime::Frame),
+            views: job.plan.upload("maps/views", &data),
+            drawn: vec![false; views.len()],
+        }))
+    }
+}
+
+/// Views that receive: one over the receiver's rectangle, which all lights share; in `shared` mode each light's own.
+///
+/// The margin of one splat and a texel keeps every splat whole whose centre lies in the rectangle.
+fn receiving_views(job: &Job<'_>, side: u32, diameter: u32) -> Vec<View> {
+    if job.settings.choice(&light::VIEW) == "shared" {
+        // A light that emits nothing keeps a layer, so that layers go by lights; any view serves it.
+        let of_light = |l: usize| job.emissions.iter().find(|e| e.light == l).or(job.emissions.first());
+        return (0..job.lights).filter_map(of_light).map(|e| e.view).collect();
+    }
+    let margin = 0.5 * f64::from(diameter) + 1.0;
+    let r = job.receiver;
+    vec![View::of_rectangle(r.center, r.u, r.v, side, margin, job.everything)]
+}
+
+struct PlannedMaps {
+    side: u32,
+    diameter: u32,
+    layers: u32,
+    map: ImageId,
+    views: BufferId,
+    drawn: Vec<bool>,
+}
+
+/// Push constants of `glsl/maps/gather_fetch.vert` and `splat.frag`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct GatherPush {
+    side: i32,
+    diameter: f32,
+    layer: u32,
+}
+
+impl PlannedMaps {
+    fn views(&self) -> (&'static str, Resource) {
+        ("maps_views", Resource::Buffer(self.views))
+    }
+}
+
+impl Planned for PlannedMaps {
+    fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
+        ("maps/capture.glsl", vec![self.views()])
+    }
+
+    fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
+        let n = job.photons.side;
+        let layer = (job.emissions[view].light as u32).min(self.layers - 1);
+        let first = !std::mem::replace(&mut self.drawn[layer as usize], true);
+        let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, layer };
+        job.plan
+            .pass(&name_of("maps/gather"))
+            .with(job.photons.fetch(&[Column::Hit, Column::Flux]))
+            .with([self.views()])
+            .push(&push)
+            .target(self.map, layer, first.then_some([0.0; 4]), Blend::Add)
+            .draw(
+                &["maps/gather_fetch.vert", "maps/splat.frag"],
+                Topology::Points,
+                vec![Draw { vertices: n, first_vertex: 0, instances: n, first_instance: 0 }],
+            );
+    }
+
+    fn provide(&self) -> Provided {
+        let reads = vec![("maps_map", Resource::Image(self.map)), self.views()];
+        Provided { surface: Some(SurfaceProvider { file: "maps/surface.glsl", reads }), deposits: vec![self.map] }
+    }
+}

@@ -1,0 +1,45 @@
+//! What views have to hold: the specular objects, the receiver's rectangles, everything.
+
+use glam::DVec3;
+
+use crate::{
+    scene::{Object, Region, Scene, Shape},
+    view::Extent,
+};
+
+/// Points and spheres of one object: spheres exact, meshes by their vertices.
+fn of_object(object: &Object) -> Extent {
+    match &object.shape {
+        Shape::Sphere { center, radius } => Extent { points: vec![], spheres: vec![(*center, *radius)] },
+        Shape::Quad { center, u, v } => corners(*center, *u, *v),
+        Shape::Mesh { mesh, to_world } => {
+            let used = mesh.triangles.iter().flatten().filter_map(|&i| mesh.positions.get(i as usize));
+            Extent { points: used.map(|p| to_world.transform_point3(p.as_dvec3())).collect(), spheres: vec![] }
+        }
+    }
+}
+
+fn corners(center: DVec3, u: DVec3, v: DVec3) -> Extent {
+    Extent { points: [u + v, u - v, v - u, -u - v].map(|d| center + d).to_vec(), spheres: vec![] }
+}
+
+/// The corners of a rectangle on a receiver.
+pub fn of_region(region: &Region) -> Extent {
+    corners(region.center, region.u, region.v)
+}
+
+/// All objects that refract or reflect.
+pub fn specular(scene: &Scene) -> Extent {
+    objects(scene, |o| scene.materials[o.material].is_specular())
+}
+
+/// All objects.
+pub fn everything(scene: &Scene) -> Extent {
+    objects(scene, |_| true)
+}
+
+fn objects(scene: &Scene, keep: impl Fn(&Object) -> bool) -> Extent {
+    let mut all = Extent::default();
+    scene.objects.iter().filter(|o| keep(o)).for_each(|o| all.join(&of_object(o)));
+    all
+}

@@ -1,0 +1,268 @@
+//! The eye: G-buffer, direct light with shadows, the surface slot, pixels that look through glass, compose.
+//!
+//! Cost: the G-buffer is bound by its k² samples a pixel (16 bytes each); direct light by one shadow ray a sample and
+//! light; traced pixels by their Fresnel trees.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    accel::SceneArrays,
+    scene::{SceneBuffers, visible_draws},
+};
+use crate::{
+    gpu::{Blend, BufferId, Format, ImageId, Lifetime, Plan, Resource, Topology},
+    scene::{Camera, CameraKind, Scene},
+    settings::{Real, Setting, Settings, Whole},
+    view::{Extent, View, ViewData},
+};
+
+/// Samples a pixel along each axis.
+pub static SAMPLES: Whole = Whole {
+    key: "eye.samples",
+    unit: "samples",
+    default: 1,
+    range: 1..=16,
+    doc: "k for k x k eye samples a pixel, box-filtered",
+};
+
+/// Depth of the Fresnel tree.
+pub static DEPTH: Whole = Whole {
+    key: "eye.depth",
+    unit: "events",
+    default: 6,
+    range: 1..=16,
+    doc: "specular events of a path from the eye, in pixels that look at glass or mirrors",
+};
+
+/// Exposure of the PNG.
+pub static EXPOSURE: Real = Real {
+    key: "eye.exposure",
+    unit: "EV",
+    default: None,
+    range: -30.0..=30.0,
+    doc: "exposure of image.png: radiance times 2^EV; image.exr is not touched",
+};
+
+/// Settings of this room.
+pub static SETTINGS: &[Setting] = &[Setting::Whole(&SAMPLES), Setting::Whole(&DEPTH), Setting::Real(&EXPOSURE)];
+
+/// Near plane of a pinhole, relative to the far one. Depth is linear, so this costs no precision.
+const NEAR: f64 = 1e-6;
+
+/// What changes every frame (`FrameData` of `glsl/shared/frame.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[allow(missing_docs)] // the members are those of the shader
+pub struct FrameData {
+    pub eye: ViewData,
+    pub time: f32,
+    pub index: u32,
+    pub seed: u32,
+    pub pad: u32,
+}
+
+/// The view of a camera for a picture of `size` pixels.
+pub fn view(camera: &Camera, size: [u32; 2], everything: &Extent) -> View {
+    let forward = (camera.target - camera.position).normalize_or(DVec3::NEG_Z);
+    let right = forward.cross(camera.up).try_normalize().unwrap_or_else(|| crate::view::basis(forward).0);
+    let up = right.cross(forward);
+    let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
+    let (high, perspective) = match camera.kind {
+        CameraKind::Pinhole { fov_y } => {
+            let half = (0.5 * fov_y.to_radians()).tan();
+            (DVec2::new(half * aspect, half), true)
+        }
+        CameraKind::Orthographic { height, width } => {
+            (0.5 * DVec2::new(width.unwrap_or(height * aspect), height), false)
+        }
+    };
+    let (_, far) = everything.along(forward);
+    let far = (far - camera.position.dot(forward)).max(high.max_element()) * (1.0 + NEAR) + f64::MIN_POSITIVE;
+    let near = if perspective { NEAR * far } else { 0.0 };
+    View { origin: camera.position, right, up, forward, low: -high, high, near, far, perspective }
+}
+
+/// Push constants of `glsl/eye/gbuffer.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+struct EyePush {
+    size: [i32; 2],
+    samples: i32,
+}
+
+/// A provider of the slot `surface`: a GLSL function of point, normal, receiver and (u, v), and what it reads.
+#[derive(Clone, Debug)]
+pub struct SurfaceProvider {
+    /// The file that defines `surface_irradiance`.
+    pub file: &'static str,
+    /// What it reads.
+    pub reads: Vec<(&'static str, Resource)>,
+}
+
+/// The layers that the eye makes.
+#[derive(Clone, Copy, Debug)]
+pub struct EyeLayers {
+    /// Irradiance of direct light, W/m²; alpha is the mask.
+    pub irradiance_direct: ImageId,
+    /// Radiance by direct light, W/m²/sr.
+    pub direct: ImageId,
+    /// Irradiance of the caustic, W/m², where a provider fills the slot.
+    pub irradiance_caustic: Option<ImageId>,
+    /// Radiance by the caustic, W/m²/sr.
+    pub caustic: Option<ImageId>,
+    /// Their sum.
+    pub radiance: ImageId,
+}
+
+/// What the eye passes share.
+struct Eye<'a> {
+    plan: &'a mut Plan,
+    buffers: SceneBuffers,
+    frame: BufferId,
+    gbuffer: ImageId,
+    push: EyePush,
+    size: [u32; 2],
+}
+
+/// Everything the eye needs to know.
+pub struct EyeScene<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its arrays.
+    pub arrays: &'a SceneArrays,
+    /// Its buffers.
+    pub buffers: SceneBuffers,
+    /// The buffer of [`FrameData`].
+    pub frame: BufferId,
+    /// The camera.
+    pub camera: &'a Camera,
+    /// Pixels.
+    pub size: [u32; 2],
+}
+
+/// Adds the eye's passes.
+pub fn passes(
+    plan: &mut Plan,
+    from: &EyeScene<'_>,
+    settings: &Settings,
+    surface: Option<&SurfaceProvider>,
+) -> EyeLayers {
+    let samples = settings.whole(&SAMPLES);
+    let image = |plan: &mut Plan, name: &str| plan.image(name, from.size, Format::Rgba32f, Lifetime::Frame);
+    let gbuffer = gbuffer(plan, from, samples);
+    let push = EyePush { size: from.size.map(|s| s as i32), samples: samples as i32 };
+    let mut eye = Eye { plan, buffers: from.buffers, frame: from.frame, gbuffer, push, size: from.size };
+    let (irradiance_direct, direct) = eye.direct(from.scene.lights.len());
+    let (irradiance_caustic, caustic) = match surface {
+        Some(provider) => {
+            let (e, l) = eye.surface(provider);
+            (Some(e), Some(l))
+        }
+        None => (None, None),
+    };
+    let draws = visible_draws(from.scene, from.camera, from.arrays);
+    let sees_specular = draws.iter().any(|d| {
+        let object = from.arrays.instances[d.first_instance as usize].object as usize;
+        from.scene.materials[from.scene.objects[object].material].is_specular()
+    });
+    if sees_specular {
+        eye.trace(from.scene.lights.len(), settings.whole(&DEPTH), direct, caustic, surface);
+    } else if !from.scene.has_specular() {
+        eye.plan.leave_out("eye/trace", "nothing in the scene is specular");
+    } else {
+        eye.plan.leave_out("eye/trace", "the camera sees no specular object");
+    }
+    let radiance = image(eye.plan, "eye/radiance");
+    let compose = eye.plan.pass("eye/compose").fetch("layer_direct", direct);
+    let compose = match caustic {
+        Some(caustic) => compose.fetch("layer_caustic", caustic).define("CAUSTIC", 1),
+        None => compose,
+    };
+    compose.target(radiance, 0, Some([0.0; 4]), Blend::Replace).screen("passes/compose.frag");
+    EyeLayers { irradiance_direct, direct, irradiance_caustic, caustic, radiance }
+}
+
+/// Push constants of `glsl/eye/gbuffer.frag`.
+fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>, samples: u32) -> ImageId {
+    let extent = from.size.map(|s| s.saturating_mul(samples));
+    let seen = plan.image("eye/gbuffer", extent, Format::Rgba32u, Lifetime::Frame);
+    let depth = plan.image("eye/depth", extent, Format::Depth32f, Lifetime::Frame);
+    let draws = visible_draws(from.scene, from.camera, from.arrays);
+    plan.pass("eye/gbuffer")
+        .with(from.buffers.vertices())
+        .read("frame", from.frame)
+        .push(&extent.map(|s| s as i32))
+        .target(seen, 0, Some([0.0; 4]), Blend::Replace)
+        .depth(depth, true)
+        .draw(&["eye/gbuffer.vert", "eye/gbuffer.frag"], Topology::Triangles, draws);
+    seen
+}
+
+impl Eye<'_> {
+    fn target(&mut self, name: &str) -> ImageId {
+        self.plan.image(name, self.size, Format::Rgba32f, Lifetime::Frame)
+    }
+
+    fn direct(&mut self, lights: usize) -> (ImageId, ImageId) {
+        let (irradiance, radiance) = (self.target("eye/irradiance.direct"), self.target("eye/direct"));
+        let mut pass = self.plan.pass("eye/direct");
+        pass = match lights {
+            0 => pass.with(self.buffers.surfaces()),
+            _ => pass.with(self.buffers.tracing()).with([self.buffers.lights()]),
+        };
+        pass.read("frame", self.frame)
+            .fetch("eye_gbuffer", self.gbuffer)
+            .define("LIGHT_COUNT", lights)
+            .push(&self.push)
+            .target(irradiance, 0, Some([0.0; 4]), Blend::Replace)
+            .target(radiance, 0, Some([0.0; 4]), Blend::Replace)
+            .screen("eye/direct.frag");
+        (irradiance, radiance)
+    }
+
+    fn surface(&mut self, provider: &SurfaceProvider) -> (ImageId, ImageId) {
+        let (irradiance, radiance) = (self.target("eye/irradiance.caustic"), self.target("eye/caustic"));
+        self.plan
+            .pass("eye/surface")
+            .with(self.buffers.surfaces())
+            .with(provider.reads.iter().copied())
+            .provide("provider.glsl", provider.file)
+            .read("frame", self.frame)
+            .fetch("eye_gbuffer", self.gbuffer)
+            .push(&self.push)
+            .target(irradiance, 0, Some([0.0; 4]), Blend::Replace)
+            .target(radiance, 0, Some([0.0; 4]), Blend::Replace)
+            .screen("eye/surface.frag");
+        (irradiance, radiance)
+    }
+
+    fn trace(
+        &mut self,
+        lights: usize,
+        depth: u32,
+        direct: ImageId,
+        caustic: Option<ImageId>,
+        surface: Option<&SurfaceProvider>,
+    ) {
+        let reads = surface.map(|s| s.reads.clone()).unwrap_or_default();
+        let mut pass = self
+            .plan
+            .pass("eye/trace")
+            .with(self.buffers.tracing())
+            .with(reads)
+            .provide("provider.glsl", surface.map_or("eye/no_surface.glsl", |s| s.file))
+            .read("frame", self.frame)
+            .fetch("eye_gbuffer", self.gbuffer)
+            .define("LIGHT_COUNT", lights)
+            .define("DEPTH", depth)
+            .push(&self.push)
+            .target(direct, 0, None, Blend::Add);
+        if lights > 0 {
+            pass = pass.with([self.buffers.lights()]);
+        }
+        if let Some(caustic) = caustic {
+            pass = pass.define("CAUSTIC", 1).target(caustic, 0, None, Blend::Add);
+        }
+        pass.screen("eye/trace.frag");
+    }
+}

@@ -1,0 +1,237 @@
+//! Lights: their views, and the tracer `bvh` that fills photon columns from each (Wyman 2008, section 2: the photon
+//! buffer; exact intersection in place of the image-space estimate).
+//!
+//! Cost: one dispatch of N² invocations a view, bound by traversal; 32 bytes written a photon for `maps`.
+
+use super::{PlanError, extents, scene::SceneBuffers};
+use crate::{
+    gpu::{BufferId, Format, ImageId, Lifetime, Plan, Resource},
+    scene::{LightKind, PathClass, Region, Scene},
+    settings::{Choice, Setting, Settings, Whole},
+    view::View,
+};
+
+/// Photons a side of an emission view.
+pub static SIDE: Whole = Whole {
+    key: "light.side",
+    unit: "texels",
+    default: 512,
+    range: 1..=16384,
+    doc: "photons along each side of a light's emission view (N of N x N)",
+};
+
+/// How the emission view is chosen.
+pub static VIEW: Choice = Choice {
+    key: "light.view",
+    default: "fitted",
+    words: &["fitted", "shared"],
+    doc: "fitted: to the specular objects; shared: one view of the whole scene for photons and map, as in the papers",
+};
+
+/// The tracer.
+pub static TRACER: Choice =
+    Choice { key: "light.tracer", default: "bvh", words: &["bvh"], doc: "bvh: exact intersection in a compute shader" };
+
+/// The path class.
+pub static PATHS: Choice = Choice {
+    key: "light.paths",
+    default: "scene",
+    words: &["scene", "reflect-1", "transmit-1", "transmit-2"],
+    doc: "which specular chains make the caustic; scene: as the scene file says",
+};
+
+/// Settings of this room.
+pub static SETTINGS: &[Setting] =
+    &[Setting::Whole(&SIDE), Setting::Choice(&VIEW), Setting::Choice(&TRACER), Setting::Choice(&PATHS)];
+
+/// Invocations along one side of the dispatch's work groups.
+pub(super) const GROUP: u32 = 8;
+
+/// A column of the photon buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Column {
+    /// World position on the receiver, and 1 + its object (0: no photon).
+    Hit,
+    /// RGB flux (W), and the receiver's normal.
+    Flux,
+    /// World position on the last specular surface, and how the photon ended.
+    Exit,
+    /// Direction of travel after it, and how the photon ended.
+    Direction,
+}
+
+impl Column {
+    /// The name in plans and shaders.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hit => "hit",
+            Self::Flux => "flux",
+            Self::Exit => "exit",
+            Self::Direction => "direction",
+        }
+    }
+
+    /// Positions and flux in float32; a direction loses nothing that matters in float16.
+    pub fn format(self) -> Format {
+        match self {
+            Self::Direction => Format::Rgba16f,
+            _ => Format::Rgba32f,
+        }
+    }
+}
+
+/// A view that a light emits from.
+#[derive(Clone, Copy, Debug)]
+pub struct Emission {
+    /// The light.
+    pub light: usize,
+    /// Its view.
+    pub view: View,
+}
+
+/// The photon buffer of the view at hand: columns by kind.
+#[derive(Clone, Debug)]
+pub struct Photons {
+    /// Texels a side.
+    pub side: u32,
+    columns: Vec<(Column, ImageId)>,
+}
+
+impl Photons {
+    /// The columns asked for, as images to fetch from. A column that no method declared is not there.
+    pub fn fetch(&self, wanted: &[Column]) -> Vec<(&'static str, Resource)> {
+        let named = |c: Column| match c {
+            Column::Hit => "photons_hit",
+            Column::Flux => "photons_flux",
+            Column::Exit => "photons_exit",
+            Column::Direction => "photons_direction",
+        };
+        let wanted = self.columns.iter().filter(|(c, _)| wanted.contains(c));
+        wanted.map(|&(c, image)| (named(c), Resource::Image(image))).collect()
+    }
+
+    /// Bytes a photon.
+    pub fn bytes_each(&self) -> u64 {
+        self.columns.iter().map(|(c, _)| c.format().bytes()).sum()
+    }
+}
+
+/// The path class in force.
+pub fn paths(scene: &Scene, settings: &Settings) -> Result<PathClass, PlanError> {
+    let class = settings.choice(&PATHS).parse().unwrap_or(scene.paths);
+    match class {
+        PathClass::All(_) => Err(PlanError::Refused {
+            what: format!("path class {class}"),
+            reason: "chains of any length are not built yet".into(),
+            remedy: "set light.paths to reflect-1, transmit-1 or transmit-2".into(),
+        }),
+        class => Ok(class),
+    }
+}
+
+/// The emission views of every light: none where nothing is specular or a light has no power.
+pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Result<Vec<Emission>, PlanError> {
+    let specular = extents::specular(scene);
+    if specular.is_empty() {
+        return Ok(Vec::new());
+    }
+    let shared = settings.choice(&VIEW) == "shared";
+    let everything = extents::everything(scene);
+    let mut content = specular;
+    if shared {
+        content.join(&extents::of_region(receiver));
+    }
+    let mut all = Vec::new();
+    for (light, lamp) in scene.lights.iter().enumerate() {
+        match lamp.kind {
+            LightKind::Directional { irradiance, .. } if irradiance == [0.0; 3] => {}
+            LightKind::Point { intensity, .. } if intensity == [0.0; 3] => {}
+            LightKind::Directional { direction, .. } => {
+                all.push(Emission { light, view: View::orthographic(direction, &content, &everything) });
+            }
+            LightKind::Point { position, .. } => match View::perspective(position, &content, &everything) {
+                Some(view) => all.push(Emission { light, view }),
+                None if shared => {
+                    return Err(PlanError::Refused {
+                        what: format!("light.view=shared with the light '{}'", lamp.name),
+                        reason: "no one frustum holds the objects and the receiver from there".into(),
+                        remedy: "use light.view=fitted, or move the light away from them".into(),
+                    });
+                }
+                None => all.extend(View::cube(position, &everything).map(|view| Emission { light, view })),
+            },
+        }
+    }
+    Ok(all)
+}
+
+/// Adds the photon columns that `columns` names, once for all views.
+pub fn photon_buffer(plan: &mut Plan, settings: &Settings, columns: &[Column]) -> Photons {
+    let side = settings.whole(&SIDE);
+    let image = |plan: &mut Plan, c: Column| {
+        plan.image(&format!("light/photons.{}", c.name()), [side, side], c.format(), Lifetime::Frame)
+    };
+    let mut wanted = columns.to_vec();
+    wanted.sort();
+    wanted.dedup();
+    Photons { side, columns: wanted.into_iter().map(|c| (c, image(plan, c))).collect() }
+}
+
+/// Push constants of `glsl/light/sample.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[allow(missing_docs)] // the members are those of the shader
+pub struct SamplePush {
+    pub size: [i32; 2],
+    pub light: u32,
+    pub view: u32,
+}
+
+/// What identifies a view of a light to the shaders.
+pub(super) fn sample_push(side: u32, emission: &Emission, index: usize) -> SamplePush {
+    SamplePush { size: [side as i32; 2], light: emission.light as u32, view: index as u32 }
+}
+
+/// Defines of `glsl/light/tracer.glsl`.
+pub(super) fn class_defines(class: PathClass) -> (u32, u32) {
+    match class {
+        PathClass::Reflect1 => (1, 1),
+        PathClass::Transmit1 => (1, 0),
+        PathClass::Transmit2 | PathClass::All(_) => (2, 0),
+    }
+}
+
+/// The name of a pass of view `index`: plain where there is one view only.
+pub fn view_name(base: &str, scene: &Scene, all: &[Emission], index: usize) -> String {
+    let Some(one) = all.get(index).filter(|_| all.len() > 1) else { return base.to_owned() };
+    let of_light = all.iter().filter(|e| e.light == one.light).count();
+    let before = all[..index].iter().filter(|e| e.light == one.light).count();
+    let name = &scene.lights[one.light].name;
+    if of_light > 1 { format!("{base}:{name}.{before}") } else { format!("{base}:{name}") }
+}
+
+/// The tracer over one view: `light/photons`.
+pub fn photons(
+    plan: &mut Plan,
+    name: &str,
+    scene: SceneBuffers,
+    views: BufferId,
+    class: PathClass,
+    photons: &Photons,
+    (emission, index): (&Emission, usize),
+) {
+    let groups = photons.side.div_ceil(GROUP);
+    let (events, reflect) = class_defines(class);
+    let mut pass = plan.pass(name);
+    for &(column, image) in &photons.columns {
+        let (binding, define) =
+            (format!("photons_{}", column.name()), format!("COLUMN_{}", column.name().to_uppercase()));
+        pass = pass.store(&binding, image).define(&define, column.format().glsl());
+    }
+    pass.with(scene.tracing())
+        .with([scene.lights(), ("light_views", Resource::Buffer(views))])
+        .define("EVENTS", events)
+        .define("REFLECT", reflect)
+        .push(&sample_push(photons.side, emission, index))
+        .dispatch("light/photons.comp", [groups, groups, 1], GROUP * GROUP);
+}

@@ -1,0 +1,227 @@
+//! Floor 4: plan → prepare → frame → read. Command line, lab and window are its clients.
+
+mod plan;
+mod read;
+
+use std::{sync::Arc, time::Instant};
+
+use crate::{
+    gpu::{Feature, FrameTimes, Gpu, GpuError, PassCounters, Phase, Plan, Program, Reused, Sources},
+    methods::Method,
+    passes::{
+        PlanError,
+        account::{Account, AccountRow},
+        extents,
+        eye::{self, FrameData},
+    },
+    scene::{Camera, Scene},
+    settings::{Setting, Settings},
+    store::Store,
+    view::View,
+};
+
+pub use plan::{Planned, Providers, plan};
+pub use read::{Dump, Energy};
+
+/// An error of rendering.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The scene, settings and method do not make a plan.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The method needs what the device lacks.
+    #[error(
+        "method '{method}' cannot run on {device}: it lacks {lacks} (nephroid devices shows which methods run where)"
+    )]
+    Lacks {
+        /// The method.
+        method: &'static str,
+        /// The device.
+        device: String,
+        /// What is missing.
+        lacks: String,
+    },
+    /// No layer or resource of that name.
+    #[error("there is no '{name}'; there are: {known}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+}
+
+/// What a frame is made for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Frame {
+    /// Seconds.
+    pub time: f64,
+    /// Its number.
+    pub index: u32,
+    /// Seed of anything random.
+    pub seed: u32,
+    /// Another place to look from than the camera's; it must see the same objects.
+    pub camera: Option<View>,
+}
+
+/// A scene and a method ready to be rendered again and again.
+pub struct Renderer {
+    gpu: Gpu,
+    planned: Planned,
+    program: Program,
+    eye: View,
+    scene: Arc<Scene>,
+    sources: Sources,
+    store: Store,
+    prepare_ms: Vec<(&'static str, f64)>,
+}
+
+/// What is rendered, and how.
+#[derive(Clone)]
+pub struct Job {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Who fills the slots.
+    pub providers: Providers,
+    /// The settings.
+    pub settings: Settings,
+    /// The camera's name.
+    pub camera: String,
+    /// Pixels.
+    pub size: [u32; 2],
+}
+
+impl Job {
+    /// The camera of that name, or an error that lists them.
+    pub fn camera(&self) -> Result<&Camera, RenderError> {
+        self.scene.cameras.get(&self.camera).ok_or_else(|| RenderError::Unknown {
+            name: format!("camera {}", self.camera),
+            known: self.scene.cameras.keys().cloned().collect::<Vec<_>>().join(", "),
+        })
+    }
+}
+
+/// Every setting of every room, sorted as they are listed.
+pub fn all_settings() -> Vec<Setting> {
+    let rooms = [crate::passes::light::SETTINGS, crate::passes::eye::SETTINGS];
+    let methods = crate::methods::ALL.iter().map(|m| m.settings());
+    rooms.into_iter().chain(methods).flatten().copied().collect()
+}
+
+/// What a method needs and the device lacks.
+pub fn lacks(method: &dyn Method, features: &[Feature]) -> Vec<&'static str> {
+    method.needs().iter().filter(|f| !features.contains(f)).map(|f| f.name()).collect()
+}
+
+impl Renderer {
+    /// Plans and prepares; allocates and compiles exactly what the plan lists.
+    pub fn new(gpu: &Gpu, job: &Job) -> Result<Self, RenderError> {
+        Self::with_sources(gpu, job, Sources::default())
+    }
+
+    /// As [`Self::new`], with shaders of one's own in the place of some shipped ones.
+    pub fn with_sources(gpu: &Gpu, job: &Job, sources: Sources) -> Result<Self, RenderError> {
+        Self::prepare(gpu, job, sources, Store::open(), None)
+    }
+
+    /// Plans again for a changed job; what did not change is kept.
+    pub fn replan(self, job: &Job) -> Result<Self, RenderError> {
+        let Self { gpu, program, sources, store, .. } = self;
+        Self::prepare(&gpu, job, sources, store, Some(program))
+    }
+
+    fn prepare(
+        gpu: &Gpu,
+        job: &Job,
+        sources: Sources,
+        store: Store,
+        old: Option<Program>,
+    ) -> Result<Self, RenderError> {
+        for method in job.providers.methods() {
+            let lacks = lacks(method, &gpu.info().features);
+            if !lacks.is_empty() {
+                let device = gpu.info().label();
+                return Err(RenderError::Lacks { method: method.name(), device, lacks: lacks.join(", ") });
+            }
+        }
+        let start = Instant::now();
+        let planned = plan(job)?;
+        let plan_ms = start.elapsed().as_secs_f64() * 1e3;
+        let start = Instant::now();
+        let mut program = Program::new(gpu, planned.plan.clone(), &sources, &store, old)?;
+        let program_ms = start.elapsed().as_secs_f64() * 1e3;
+        let start = Instant::now();
+        if program.passes(Phase::Prepare).next().is_some() {
+            program.run(Phase::Prepare, &[])?;
+        }
+        let passes_ms = start.elapsed().as_secs_f64() * 1e3;
+        let prepare_ms =
+            vec![("prepare/plan", plan_ms), ("prepare/program", program_ms), ("prepare/passes", passes_ms)];
+        let eye = eye::view(job.camera()?, job.size, &extents::everything(&job.scene));
+        let scene = job.scene.clone();
+        Ok(Self { gpu: gpu.clone(), planned, program, eye, scene, sources, store, prepare_ms })
+    }
+
+    /// What is recorded every frame.
+    pub fn plan(&self) -> &Plan {
+        self.program.plan()
+    }
+
+    /// What preparing took, ms on the host: planning (trees included), compiling and allocating, passes.
+    pub fn prepare_ms(&self) -> &[(&'static str, f64)] {
+        &self.prepare_ms
+    }
+
+    /// What the last re-plan kept.
+    pub fn reused(&self) -> Reused {
+        self.program.reused()
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Stage names of a frame, in order: the rows of [`FrameTimes::passes`].
+    pub fn stages(&self) -> Vec<String> {
+        self.program.passes(Phase::Frame).map(|p| p.name.clone()).collect()
+    }
+
+    /// Renders a frame and waits for it.
+    pub fn frame(&mut self, frame: &Frame) -> Result<FrameTimes, RenderError> {
+        let data = self.frame_data(frame);
+        Ok(self.program.run(Phase::Frame, &[(self.planned.frame, bytemuck::bytes_of(&data))])?)
+    }
+
+    /// Renders a frame and counts what each pass does, outside the timed frames.
+    pub fn counters(&mut self, frame: &Frame) -> Result<Vec<(String, PassCounters)>, RenderError> {
+        let data = self.frame_data(frame);
+        Ok(self.program.count(Phase::Frame, &[(self.planned.frame, bytemuck::bytes_of(&data))])?)
+    }
+
+    /// Counts every photon and every watt, outside the timed frames.
+    pub fn account(&mut self) -> Result<Account, RenderError> {
+        if self.planned.accounts.is_empty() {
+            return Ok(Account::default());
+        }
+        self.program.run(Phase::Account, &[])?;
+        let mut rows: Vec<AccountRow> = Vec::new();
+        for &buffer in &self.planned.accounts {
+            rows.append(&mut bytemuck::pod_collect_to_vec(&self.program.read_buffer(buffer)?));
+        }
+        Ok(Account::of(&rows))
+    }
+
+    fn frame_data(&self, frame: &Frame) -> FrameData {
+        let eye = frame.camera.unwrap_or(self.eye).data();
+        FrameData { eye, time: frame.time as f32, index: frame.index, seed: frame.seed, pad: 0 }
+    }
+}

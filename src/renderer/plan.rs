@@ -1,0 +1,148 @@
+//! From a job to a plan: which passes the scene needs, and which it does not.
+
+use super::{Job, RenderError};
+use crate::{
+    gpu::{BufferId, ImageId, Lifetime, Plan},
+    methods::{self, Method, Slot},
+    passes::{
+        PlanError,
+        accel::SceneArrays,
+        account, extents,
+        eye::{self, EyeLayers, EyeScene, FrameData},
+        light,
+        scene::SceneBuffers,
+    },
+    view::Extent,
+};
+
+/// Who fills each slot; nobody, if the frame shows direct light alone.
+#[derive(Clone, Copy, Default)]
+pub struct Providers {
+    /// The slot `surface`.
+    pub surface: Option<&'static dyn Method>,
+    /// The slot `medium`.
+    pub medium: Option<&'static dyn Method>,
+}
+
+impl Providers {
+    /// One method for every slot it fills.
+    pub fn of(method: &'static dyn Method) -> Self {
+        let fills = |slot| method.slots().contains(&slot).then_some(method);
+        Self { surface: fills(Slot::Surface), medium: fills(Slot::Medium) }
+    }
+
+    /// The distinct methods.
+    pub fn methods(&self) -> Vec<&'static dyn Method> {
+        let mut all: Vec<&'static dyn Method> = Vec::new();
+        for method in [self.surface, self.medium].into_iter().flatten() {
+            if !all.iter().any(|m| m.name() == method.name()) {
+                all.push(method);
+            }
+        }
+        all
+    }
+}
+
+/// A plan and what its client needs to know of it.
+pub struct Planned {
+    /// The plan.
+    pub plan: Plan,
+    /// The buffer written every frame.
+    pub frame: BufferId,
+    /// The picture's layers.
+    pub layers: EyeLayers,
+    /// Buffers of the photon account.
+    pub accounts: Vec<BufferId>,
+    /// Images that hold deposited flux.
+    pub deposits: Vec<ImageId>,
+    /// Bytes a photon; 0 without photons.
+    pub photon_bytes: u64,
+}
+
+/// Plans a frame. Needs no device.
+pub fn plan(job: &Job) -> Result<Planned, RenderError> {
+    let camera = job.camera()?;
+    let (scene, settings) = (&*job.scene, &job.settings);
+    let arrays = SceneArrays::build(scene).map_err(PlanError::from)?;
+    let everything = extents::everything(scene);
+    let mut plan = Plan::default();
+    let buffers = SceneBuffers::upload(&mut plan, &arrays);
+    let frame = plan.buffer("frame", size_of::<FrameData>() as u64, Lifetime::Frame);
+    let photons = photon_passes(&mut plan, job, buffers, &everything)?;
+    let from = EyeScene { scene, arrays: &arrays, buffers, frame, camera, size: job.size };
+    let provided = photons.provided.as_ref().and_then(|p| p.surface.as_ref());
+    let layers = eye::passes(&mut plan, &from, settings, provided);
+    Ok(Planned {
+        plan,
+        frame,
+        layers,
+        accounts: photons.accounts,
+        deposits: photons.provided.map(|p| p.deposits).unwrap_or_default(),
+        photon_bytes: photons.bytes_each,
+    })
+}
+
+#[derive(Default)]
+struct PhotonPasses {
+    provided: Option<methods::Provided>,
+    accounts: Vec<BufferId>,
+    bytes_each: u64,
+}
+
+/// The part of a frame that photons make; empty, with its reason, where the scene cannot show a caustic.
+fn photon_passes(
+    plan: &mut Plan,
+    job: &Job,
+    buffers: SceneBuffers,
+    everything: &Extent,
+) -> Result<PhotonPasses, PlanError> {
+    let (scene, settings) = (&*job.scene, &job.settings);
+    if let Some(method) = job.providers.medium.filter(|m| !m.slots().contains(&Slot::Medium)) {
+        return Err(PlanError::Refused {
+            what: format!("--medium {}", method.name()),
+            reason: "it does not fill the slot medium".into(),
+            remedy: "media are not built yet".into(),
+        });
+    }
+    let class = light::paths(scene, settings)?;
+    let receiver = if job.camera == "region" { &scene.region } else { &scene.extent };
+    let emissions = light::emissions(scene, settings, receiver)?;
+    let reason = match job.providers.surface {
+        None => Some("no method was asked for"),
+        Some(_) if scene.lights.is_empty() => Some("there is no light"),
+        Some(_) if !scene.has_specular() => Some("nothing in the scene is specular"),
+        Some(_) if emissions.is_empty() => Some("no light has any power, or no specular object any surface"),
+        Some(_) => None,
+    };
+    let (Some(method), None) = (job.providers.surface, reason) else {
+        let stages = job.providers.surface.map(|m| m.stages()).unwrap_or_default();
+        for name in ["light/photons"].iter().chain(stages).chain(&["eye/surface", "light/account"]) {
+            plan.leave_out(name, reason.unwrap_or_default());
+        }
+        return Ok(PhotonPasses::default());
+    };
+    let photons = light::photon_buffer(plan, settings, method.columns());
+    let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
+    let views = plan.upload("light/views", &views);
+    let mut work = methods::Job {
+        plan,
+        settings,
+        receiver,
+        everything,
+        emissions: &emissions,
+        lights: scene.lights.len(),
+        photons: &photons,
+    };
+    let mut planned = method.plan(&mut work)?;
+    let mut accounts = Vec::new();
+    for (index, emission) in emissions.iter().enumerate() {
+        let name_of = |base: &str| light::view_name(base, scene, &emissions, index);
+        let at = (emission, index);
+        light::photons(work.plan, &name_of("light/photons"), buffers, views, class, &photons, at);
+        planned.gather(&mut work, index, &name_of);
+        let (plan, capture) = (&mut *work.plan, planned.capture());
+        let name = name_of("light/account");
+        accounts.push(account::account(plan, &name, buffers, views, class, &photons, at, &capture));
+    }
+    Ok(PhotonPasses { provided: Some(planned.provide()), accounts, bytes_each: photons.bytes_each() })
+}

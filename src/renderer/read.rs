@@ -1,0 +1,116 @@
+//! What comes out of a frame: layers of the picture, any image or buffer of the plan, the light deposited.
+
+use super::{RenderError, Renderer};
+use crate::{
+    gpu::{Format, ImageId, Resource},
+    image::Layers,
+    passes::account::Account,
+};
+
+/// Any image or buffer of a plan, read back.
+pub enum Dump {
+    /// An image: one per array layer, channels interleaved.
+    Image {
+        /// Width and height.
+        extent: [u32; 2],
+        /// Channels a texel.
+        channels: u32,
+        /// Texels of each array layer.
+        layers: Vec<Vec<f32>>,
+    },
+    /// A buffer: 32-bit words.
+    Buffer(Vec<u32>),
+}
+
+/// The light of a frame, W, mean of the bands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Energy {
+    /// Through the silhouettes of the specular objects.
+    pub emitted_w: f64,
+    /// Of the photons that the method takes.
+    pub valid_w: f64,
+    /// Sum over the finished map's texels, in float64.
+    pub deposited_w: f64,
+    /// Deposited over valid; `None` where nothing is valid.
+    pub ratio: Option<f64>,
+}
+
+impl Renderer {
+    /// The picture's layers: `radiance`, `direct`, `caustic`, `irradiance.direct`, `irradiance.caustic`, `mask`.
+    pub fn layers(&self) -> Result<Layers, RenderError> {
+        let layers = self.planned.layers;
+        let [width, height] = self.plan_extent(layers.radiance);
+        let pixels = width as usize * height as usize;
+        let mut picture = Layers::new(width as usize, height as usize);
+        let rgb = |texels: &[f32]| texels.chunks_exact(4).flat_map(|t| [t[0], t[1], t[2]]).collect::<Vec<_>>();
+        let read = |image: Option<ImageId>| match image {
+            Some(image) => Ok::<_, RenderError>(self.program.read_image(image)?),
+            None => Ok(vec![0.0; 4 * pixels]),
+        };
+        let direct = read(Some(layers.irradiance_direct))?;
+        let mask = direct.chunks_exact(4).map(|t| t[3]).collect::<Vec<_>>();
+        let all = [
+            ("radiance", 3, rgb(&read(Some(layers.radiance))?)),
+            ("direct", 3, rgb(&read(Some(layers.direct))?)),
+            ("caustic", 3, rgb(&read(layers.caustic)?)),
+            ("irradiance.direct", 3, rgb(&direct)),
+            ("irradiance.caustic", 3, rgb(&read(layers.irradiance_caustic)?)),
+            ("mask", 1, mask),
+        ];
+        for (name, channels, data) in all {
+            picture.push(name, channels, data).expect("the layers above are of the picture's size");
+        }
+        Ok(picture)
+    }
+
+    /// Any image or buffer by the name that the plan prints.
+    pub fn dump(&self, name: &str) -> Result<Dump, RenderError> {
+        match self.plan().find(name) {
+            Some(Resource::Buffer(buffer)) => {
+                let bytes = self.program.read_buffer(buffer)?;
+                Ok(Dump::Buffer(bytemuck::pod_collect_to_vec(&bytes)))
+            }
+            Some(Resource::Image(image)) => {
+                let decl = self.plan().images.iter().find(|i| i.name == name).cloned();
+                let Some(decl) = decl else { return Err(self.unknown(name)) };
+                let texels = self.program.read_image(image)?;
+                let each = texels.len() / decl.layers.max(1) as usize;
+                Ok(Dump::Image {
+                    extent: decl.extent,
+                    channels: decl.format.channels(),
+                    layers: texels.chunks_exact(each.max(1)).map(<[f32]>::to_vec).collect(),
+                })
+            }
+            None => Err(self.unknown(name)),
+        }
+    }
+
+    /// The light of the last frame beside the account of its photons.
+    pub fn energy(&self, account: &Account) -> Result<Energy, RenderError> {
+        let mut deposited_w = 0.0;
+        for &image in &self.planned.deposits {
+            let texels = self.program.read_image(image)?;
+            let bands = texels.chunks_exact(4).flat_map(|t| &t[..3]).map(|&v| f64::from(v));
+            deposited_w += bands.sum::<f64>() / 3.0;
+        }
+        let valid_w = account.valid_w();
+        let ratio = (valid_w > 0.0).then(|| deposited_w / valid_w);
+        Ok(Energy { emitted_w: account.emitted_w(), valid_w, deposited_w, ratio })
+    }
+
+    /// Bytes a photon in the photon buffer; 0 without photons.
+    pub fn photon_bytes(&self) -> u64 {
+        self.planned.photon_bytes
+    }
+
+    fn plan_extent(&self, image: ImageId) -> [u32; 2] {
+        self.plan().image_extent(image)
+    }
+
+    fn unknown(&self, name: &str) -> RenderError {
+        let plan = self.plan();
+        let images = plan.images.iter().filter(|i| i.format != Format::Depth32f).map(|i| i.name.clone());
+        let known = images.chain(plan.buffers.iter().map(|b| b.name.clone())).collect::<Vec<_>>().join(", ");
+        RenderError::Unknown { name: name.to_owned(), known }
+    }
+}
