@@ -1,7 +1,12 @@
 //! The first picture, looked at while building.
 mod common;
 use common::{assert_quiet, gpu};
-use nephroid::{image, methods, renderer::{Frame, Job, Providers, Renderer}, scene::Scene, settings::Settings};
+use nephroid::{
+    image, methods,
+    renderer::{Frame, Job, Providers, Renderer},
+    scene::Scene,
+    settings::Settings,
+};
 use std::sync::Arc;
 
 #[test]
@@ -13,11 +18,24 @@ fn first_light() {
         let known = nephroid::renderer::all_settings();
         settings.set(&known, "light.side", "1024").unwrap();
         settings.set(&known, "eye.samples", "2").unwrap();
-        let job = Job { scene: scene.clone(), providers: Providers::of(methods::find("maps").unwrap()), settings, camera: "main".into(), size: [512, 512] };
+        let job = Job {
+            scene: scene.clone(),
+            providers: Providers::of(methods::find("maps").unwrap()),
+            settings,
+            camera: "main".into(),
+            size: [512, 512],
+        };
         let mut r = Renderer::new(&gpu, &job).unwrap();
         let t = r.frame(&Frame::default()).unwrap();
         let t = r.frame(&Frame::default()).unwrap();
-        println!("{name} {:?} span {} wall {} record {} prepare {:?}", r.stages().iter().zip(&t.passes).collect::<Vec<_>>(), t.span_ms, t.wall_ms, t.record_ms, r.prepare_ms());
+        println!(
+            "{name} {:?} span {} wall {} record {} prepare {:?}",
+            r.stages().iter().zip(&t.passes).collect::<Vec<_>>(),
+            t.span_ms,
+            t.wall_ms,
+            t.record_ms,
+            r.prepare_ms()
+        );
         let a = r.account().unwrap();
         println!("{a:?}\n{:?}", r.energy(&a).unwrap());
         let layers = r.layers().unwrap();

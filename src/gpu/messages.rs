@@ -49,6 +49,7 @@ impl Drop for Messages {
     }
 }
 
+// SAFETY: called by Vulkan alone, with what the specification promises.
 unsafe extern "system" fn hear(
     _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _kind: vk::DebugUtilsMessageTypeFlagsEXT,
