@@ -1,6 +1,7 @@
 //! Shared by the integration tests: a validated device, and shader probes that run shipped GLSL on lists of inputs.
 #![allow(dead_code)] // each test binary uses its own part
 
+pub mod cpu;
 pub mod random;
 
 use bytemuck::{NoUninit, Pod};

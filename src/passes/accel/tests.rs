@@ -15,11 +15,6 @@ fn map(rows: &[[f32; 4]; 3], p: [f32; 3]) -> [f32; 3] {
     rows.map(|r| r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3])
 }
 
-fn object(scene: &Scene, arrays: &SceneArrays, name: &str) -> Instance {
-    let index = scene.objects.iter().position(|o| o.name == name).unwrap() as u32;
-    *arrays.instances.iter().find(|i| i.object == index).unwrap()
-}
-
 #[test]
 fn constants_agree_with_the_shaders() {
     let source =
