@@ -40,7 +40,7 @@ struct GpuHit {
     nodes: u32,
 }
 
-fn on_device(arrays: &SceneArrays, rays: &[Row]) -> Vec<GpuHit> {
+fn on_device(scene: &Scene, arrays: &SceneArrays, rays: &[Row]) -> Vec<GpuHit> {
     let probe = Probe {
         includes: &["shared/bvh.glsl"],
         input: "vec3 o; vec3 d;",
@@ -50,8 +50,9 @@ fn on_device(arrays: &SceneArrays, rays: &[Row]) -> Vec<GpuHit> {
         defines: &[("COUNT_NODES", "1")],
         ..Default::default()
     };
-    let buffers = |plan: &mut nephroid::gpu::Plan| {
-        SceneBuffers::upload(plan, arrays).tracing().into_iter().filter(|(name, _)| *name != "scene_normals").collect()
+    let buffers = |plan: &mut nephroid::gpu::Plan| -> common::Binder {
+        let buffers = SceneBuffers::upload(plan, scene, arrays);
+        Box::new(move |pass| buffers.tracing(pass))
     };
     let outputs: Vec<[u32; 4]> = probe.run_with(&gpu(), rays, buffers);
     let hit = |y: &[u32; 4]| {
@@ -150,7 +151,7 @@ fn judge(scene: &CpuScene, row: &Row, g: &GpuHit, c: &CpuHit) -> Result<Option<T
 fn compare(name: &str, scene: &Scene) {
     let arrays = SceneArrays::build(scene).unwrap();
     let rays = rays(&arrays);
-    let found = on_device(&arrays, &rays);
+    let found = on_device(scene, &arrays, &rays);
     let cpu = CpuScene::new(&arrays);
     let expected: Vec<CpuHit> = rays.par_iter().map(|r| cpu.trace([r[0], r[1], r[2]], [r[3], r[4], r[5]])).collect();
     let verdicts: Vec<_> =

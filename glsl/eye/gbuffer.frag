@@ -8,7 +8,9 @@
 #include "shared/bvh.glsl"
 #include "shared/frame.glsl"
 
+#ifndef NO_SPHERES
 layout(push_constant, scalar) uniform Push { ivec2 size; } push;
+#endif
 
 layout(location = 0) in vec2 shape_uv;
 layout(location = 1) in float eye_depth;
@@ -18,6 +20,7 @@ layout(location = 0) out uvec4 seen;
 void main() {
     View eye = frame.data.eye;
     float depth = eye_depth;
+#ifndef NO_SPHERES
     Instance at = scene_instances.data[shape.x];
     if (at.kind == SHAPE_SPHERE) {
         vec3 o, d;
@@ -26,6 +29,7 @@ void main() {
         if (!(t < NO_HIT)) discard;
         depth = dot(o + t * d - eye.origin, eye.forward);
     }
+#endif
     gl_FragDepth = clamp((depth - eye.near) / (eye.far - eye.near), 0.0, 1.0);
     seen = uvec4(shape.x + 1u, shape.y, floatBitsToUint(shape_uv));
 }

@@ -28,7 +28,7 @@ vec2 quad_corner(int vertex) {
 
 void main() {
     Instance at = scene_instances.data[gl_InstanceIndex];
-    vec3 local;
+    vec3 local = vec3(0.0);
     shape = uvec2(uint(gl_InstanceIndex), 0u);
     shape_uv = vec2(0.0);
     if (at.kind == SHAPE_SPHERE) {
@@ -36,13 +36,16 @@ void main() {
     } else if (at.kind == SHAPE_QUAD) {
         shape_uv = quad_corner(gl_VertexIndex);
         local = vec3(shape_uv, 0.0);
-    } else {
+    }
+#ifndef NO_MESHES
+    if (at.kind == SHAPE_MESH) {
         shape.y = uint(gl_VertexIndex) / 3u;
         Triangle triangle = scene_triangles.data[shape.y];
         int corner = gl_VertexIndex % 3;
         local = corner == 0 ? triangle.a : corner == 1 ? triangle.b : triangle.c;
         shape_uv = vec2(corner == 1 ? 1.0 : 0.0, corner == 2 ? 1.0 : 0.0);
     }
+#endif
     vec3 p = map_point(at.to_world, local);
     eye_depth = dot(p - frame.data.eye.origin, frame.data.eye.forward);
     gl_Position = view_clip(frame.data.eye, p);

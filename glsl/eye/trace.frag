@@ -29,12 +29,12 @@ struct Branch {
     int events;
 };
 
-Branch pending[DEPTH + 2];
-int pending_count = 0;
+Branch branches[DEPTH + 2];
+int branch_count = 0;
 
 void follow(Surface s, vec3 d, vec3 share, uint medium, int events) {
-    if (pending_count >= DEPTH + 2 || !(max(share.r, max(share.g, share.b)) > FAINT)) return;
-    pending[pending_count++] = Branch(leave(s, d), d, share, medium, events);
+    if (branch_count >= DEPTH + 2 || !(max(share.r, max(share.g, share.b)) > FAINT)) return;
+    branches[branch_count++] = Branch(leave(s, d), d, share, medium, events);
 }
 
 // One specular surface: its reflected and refracted rays. L/n^2 is invariant across an interface.
@@ -69,8 +69,8 @@ void look(Surface s, vec3 d) {
     uint medium = inside ? s.material : MEDIUM_AIR;
     vec3 first = inside ? medium_transmits(medium, length(s.p - frame.data.eye.origin)) : vec3(1.0);
     split(s, d, first, medium, 0);
-    while (pending_count > 0) {
-        Branch b = pending[--pending_count];
+    while (branch_count > 0) {
+        Branch b = branches[--branch_count];
         Hit hit;
         if (!trace(b.o, b.d, FAR, MASK_ALL, hit)) continue;
         Surface at = surface_at(b.o, b.d, hit);

@@ -44,12 +44,19 @@ vec3 map_normal(vec4 to_object[3], vec3 n) {
 // A sphere or quad against the nearest hit so far.
 bool test_shape(Instance shape, uint index, LocalRay ray, inout Hit hit) {
     vec2 uv = vec2(0.0);
+#if defined(NO_QUADS)
+    float t = hit_sphere(ray, hit.t);
+#elif defined(NO_SPHERES)
+    float t = hit_quad(ray, hit.t, uv);
+#else
     float t = shape.kind == SHAPE_SPHERE ? hit_sphere(ray, hit.t) : hit_quad(ray, hit.t, uv);
+#endif
     if (!(t < hit.t)) return false;
     hit = Hit(t, index, 0u, uv);
     return true;
 }
 
+#ifndef NO_MESHES
 bool test_triangles(uint first, uint count, uint instance, LocalRay ray, inout Hit hit) {
     bool found = false;
     for (uint k = first; k < first + count; k++) {
@@ -62,6 +69,7 @@ bool test_triangles(uint first, uint count, uint instance, LocalRay ray, inout H
     }
     return found;
 }
+#endif
 
 bool is_leaf(uint reference) {
     return reference >> 28 != 0u;
@@ -85,69 +93,86 @@ void open_node(uint first, LocalRay ray, float t_max, out uvec2 children, out ve
     }
 }
 
-// One loop for both trees: it opens a node, tests a leaf's triangles or one instance of an upper leaf, or takes the
-// next node from the stack. Inside a mesh the stack above mesh_base is the mesh's.
+// What is still to visit: references, and where the ray enters their boxes.
+uint pending[TRAVERSAL_STACK];
+float pending_enter[TRAVERSAL_STACK];
+
+void put_off(uint node, float enter, inout int height) {
+    if (height >= TRAVERSAL_STACK) return;
+    pending[height] = node;
+    pending_enter[height++] = enter;
+}
+
+// The next node above `base` that may still hold a nearer hit; false if there is none.
+bool take_up(int base, float t_max, inout int height, out uint node) {
+    node = 0u;
+    while (height > base) {
+        height--;
+        node = pending[height];
+        if (pending_enter[height] < t_max) return true;
+    }
+    return false;
+}
+
+// Goes down from `node` to the next leaf on the ray; false if there is none above `base`. Opening nodes and testing
+// leaves are loops of their own, so that rays of one group do the same thing at the same time.
+// Based on: Aila and Laine, Understanding the Efficiency of Ray Traversal on GPUs, HPG 2009 (while-while).
+bool next_leaf(LocalRay ray, float t_max, int base, inout int height, inout uint node) {
+    bool have = true;
+    while (have && !is_leaf(node)) {
+        uvec2 children;
+        vec2 enter;
+        open_node(node & 0x0fffffffu, ray, t_max, children, enter);
+        if (enter.y < t_max) put_off(children.y, enter.y, height);
+        node = children.x;
+        if (!(enter.x < t_max)) have = take_up(base, t_max, height, node);
+    }
+    return have;
+}
+
+#ifndef NO_MESHES
+// A mesh against the nearest hit so far, with the part of the stack above `height`.
+bool traverse_mesh(LocalRay ray, uint instance, uint root, bool any_hit, int height, inout Hit hit) {
+    Node top = scene_nodes.data[root];
+    if (!(enter_box(ray, top.lo, top.hi) < hit.t)) return false;
+    uint node = node_reference(top);
+    int base = height;
+    bool found = false;
+    while (next_leaf(ray, hit.t, base, height, node)) {
+        if (test_triangles(node & 0x0fffffffu, node >> 28, instance, ray, hit)) found = true;
+        if (found && any_hit) break;
+        if (!take_up(base, hit.t, height, node)) break;
+    }
+    return found;
+}
+#endif
+
+bool test_instance(uint index, vec3 o, vec3 d, uint mask, bool any_hit, int height, inout Hit hit) {
+    Instance shape = scene_instances.data[index];
+    if ((material_mask(shape.material) & mask) == 0u) return false;
+    LocalRay ray = local_ray(map_point(shape.to_object, o), map_vector(shape.to_object, d));
+#ifndef NO_MESHES
+    if (shape.kind == SHAPE_MESH) return traverse_mesh(ray, index, shape.root, any_hit, height, hit);
+#endif
+    return test_shape(shape, index, ray, hit);
+}
+
+// The tree over the instances, and in its leaves each instance's own.
 bool traverse(vec3 o, vec3 d, float t_max, uint mask, bool any_hit, out Hit hit) {
     hit = Hit(min(t_max, NO_HIT), 0u, 0u, vec2(0.0));
     LocalRay world = local_ray(o, d);
     Node top = scene_nodes.data[0];
     if (!(dot(abs(d), vec3(1.0)) > 0.0) || !(enter_box(world, top.lo, top.hi) < hit.t)) return false;
-
-    uint stack[TRAVERSAL_STACK];
-    float stack_enter[TRAVERSAL_STACK];
-    int height = 0, mesh_base = 0;
-    uint instance = 0u, instance_end = 0u; // of an upper leaf, still to test
-    uint mesh_instance = 0u;
-    bool in_mesh = false, have_node = true, found = false;
-    LocalRay ray = world;
     uint node = node_reference(top);
-    while (!(found && any_hit)) {
-        if (!have_node) {
-            if (in_mesh && height == mesh_base) {
-                in_mesh = false;
-                ray = world;
-            }
-            if (!in_mesh && instance < instance_end) {
-                uint index = instance++;
-                Instance shape = scene_instances.data[index];
-                if ((material_mask(shape.material) & mask) == 0u) continue;
-                LocalRay local = local_ray(map_point(shape.to_object, o), map_vector(shape.to_object, d));
-                if (shape.kind != SHAPE_MESH) {
-                    if (test_shape(shape, index, local, hit)) found = true;
-                    continue;
-                }
-                Node root = scene_nodes.data[shape.root];
-                if (!(enter_box(local, root.lo, root.hi) < hit.t)) continue;
-                ray = local;
-                in_mesh = true;
-                mesh_instance = index;
-                mesh_base = height;
-                node = node_reference(root);
-            } else {
-                if (height == 0) break;
-                height--;
-                if (!(stack_enter[height] < hit.t)) continue;
-                node = stack[height];
-            }
+    int height = 0;
+    bool found = false;
+    while (next_leaf(world, hit.t, 0, height, node)) {
+        uint first = node & 0x0fffffffu, end = first + (node >> 28);
+        for (uint index = first; index < end && !(found && any_hit); index++) {
+            if (test_instance(index, o, d, mask, any_hit, height, hit)) found = true;
         }
-        have_node = false;
-        uint count = node >> 28, first = node & 0x0fffffffu;
-        if (count == 0u) {
-            uvec2 children;
-            vec2 enter;
-            open_node(first, ray, hit.t, children, enter);
-            if (enter.y < hit.t && height < TRAVERSAL_STACK) {
-                stack[height] = children.y;
-                stack_enter[height++] = enter.y;
-            }
-            have_node = enter.x < hit.t;
-            node = children.x;
-        } else if (in_mesh) {
-            if (test_triangles(first, count, mesh_instance, ray, hit)) found = true;
-        } else {
-            instance = first;
-            instance_end = first + count;
-        }
+        if (found && any_hit) break;
+        if (!take_up(0, hit.t, height, node)) break;
     }
     return found;
 }

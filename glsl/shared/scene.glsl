@@ -2,6 +2,8 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
+// The host defines NO_SPHERES, NO_QUADS or NO_MESHES where a scene has none: their code is then not compiled.
+
 // A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
 // primitives from `first`. All indices are absolute. The tree over the instances has its root at 0.
 struct Node {
@@ -54,8 +56,10 @@ const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 
 layout(set = 0, binding = 0, scalar) readonly buffer SceneNodes { Node data[]; } scene_nodes;
+#ifndef NO_MESHES
 layout(set = 0, binding = 1, scalar) readonly buffer SceneTriangles { Triangle data[]; } scene_triangles;
 layout(set = 0, binding = 2, scalar) readonly buffer SceneNormals { TriangleNormals data[]; } scene_normals;
+#endif
 layout(set = 0, binding = 3, scalar) readonly buffer SceneInstances { Instance data[]; } scene_instances;
 layout(set = 0, binding = 4, scalar) readonly buffer SceneMaterials { Material data[]; } scene_materials;
 layout(set = 0, binding = 5, scalar) readonly buffer SceneLights { Light data[]; } scene_lights;

@@ -37,6 +37,7 @@ float surface_rounding(Instance shape, vec3 p, vec3 ng, vec3 local, float inters
     return SURFACE_ROUNDING * (of_point + of_origin);
 }
 
+#ifndef NO_SPHERES
 Surface surface_of_sphere(Instance shape, vec3 local) {
     Surface s;
     vec3 n = safe_normalize(local, vec3(0.0, 1.0, 0.0));
@@ -48,7 +49,9 @@ Surface surface_of_sphere(Instance shape, vec3 local) {
     s.eps = surface_rounding(shape, s.p, s.ng, n, 1.0);
     return s;
 }
+#endif
 
+#ifndef NO_QUADS
 Surface surface_of_quad(Instance shape, vec2 uv) {
     Surface s;
     vec3 local = vec3(clamp(uv, -1.0, 1.0), 0.0);
@@ -59,7 +62,9 @@ Surface surface_of_quad(Instance shape, vec2 uv) {
     s.eps = surface_rounding(shape, s.p, s.ng, local, 0.0);
     return s;
 }
+#endif
 
+#ifndef NO_MESHES
 Surface surface_of_triangle(Instance shape, uint primitive, vec2 uv) {
     Surface s;
     Triangle at = scene_triangles.data[primitive];
@@ -77,18 +82,23 @@ Surface surface_of_triangle(Instance shape, uint primitive, vec2 uv) {
     s.eps = surface_rounding(shape, s.p, s.ng, abs(at.a) + abs(ab) + abs(ac), extent);
     return s;
 }
+#endif
 
 // Of a hit that `trace` found for this ray.
 Surface surface_at(vec3 o, vec3 d, Hit hit) {
     Instance shape = scene_instances.data[hit.instance];
     Surface s;
+#ifndef NO_SPHERES
     if (shape.kind == SHAPE_SPHERE) {
         s = surface_of_sphere(shape, map_point(shape.to_object, o) + hit.t * map_vector(shape.to_object, d));
-    } else if (shape.kind == SHAPE_QUAD) {
-        s = surface_of_quad(shape, hit.uv);
-    } else {
-        s = surface_of_triangle(shape, hit.primitive, hit.uv);
     }
+#endif
+#ifndef NO_QUADS
+    if (shape.kind == SHAPE_QUAD) s = surface_of_quad(shape, hit.uv);
+#endif
+#ifndef NO_MESHES
+    if (shape.kind == SHAPE_MESH) s = surface_of_triangle(shape, hit.primitive, hit.uv);
+#endif
     s.object = shape.object;
     s.material = shape.material;
     return s;

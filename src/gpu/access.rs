@@ -149,11 +149,13 @@ pub struct History {
     write: Access,
     reads: Vec<Access>,
     layout: L,
+    /// Stages that the last change of layout was made visible to; a later read elsewhere chains on them.
+    relaid: S,
 }
 
 impl Default for History {
     fn default() -> Self {
-        Self { write: Access::None, reads: Vec::with_capacity(8), layout: L::UNDEFINED }
+        Self { write: Access::None, reads: Vec::with_capacity(8), layout: L::UNDEFINED, relaid: S::NONE }
     }
 }
 
@@ -161,10 +163,18 @@ impl History {
     /// The barrier before `next`, and the history after it. `is_image`: whether layouts matter.
     pub fn advance(&mut self, next: Access, is_image: bool) -> Option<Barrier> {
         let relayout = is_image && self.layout != next.scope().layout;
-        let found = if next.writes() || relayout { self.after_all(next) } else { self.after_write(next) };
+        let fresh = self.write == Access::None && self.reads.is_empty() && !is_image;
+        let found = if fresh {
+            None
+        } else if next.writes() || relayout {
+            self.after_all(next)
+        } else {
+            self.after_write(next)
+        };
         let found = found.map(|b| Barrier { from: Scope { layout: self.layout, ..b.from }, ..b });
-        if is_image {
+        if relayout {
             self.layout = next.scope().layout;
+            self.relaid = next.scope().stages;
         }
         if next.writes() {
             self.write = next;
@@ -204,7 +214,9 @@ impl History {
         if self.reads.contains(&next) || self.write == Access::None {
             return None;
         }
-        barrier(self.write, next).or_else(|| forced(self.write, next))
+        let mut found = barrier(self.write, next).or_else(|| forced(self.write, next))?;
+        found.from.stages |= self.relaid;
+        Some(found)
     }
 }
 
@@ -284,6 +296,16 @@ mod tests {
         assert_eq!((b.from.layout, b.to.layout), (L::SHADER_READ_ONLY_OPTIMAL, L::TRANSFER_SRC_OPTIMAL));
         assert!(b.from.stages.contains(S::FRAGMENT_SHADER | S::COLOR_ATTACHMENT_OUTPUT));
         assert!(b.from.access.contains(A::COLOR_ATTACHMENT_WRITE));
+    }
+
+    #[test]
+    fn a_second_kind_of_read_waits_for_the_change_of_layout() {
+        let mut h = History::default();
+        h.advance(Access::Color, true);
+        h.advance(Access::FragmentSample, true);
+        let b = h.advance(Access::ComputeSample, true).unwrap();
+        assert_eq!(b.from.layout, b.to.layout);
+        assert!(b.from.stages.contains(S::FRAGMENT_SHADER), "the change was made visible to the fragment stage alone");
     }
 
     #[test]

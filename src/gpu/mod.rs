@@ -26,8 +26,8 @@ pub use device::{Calls, Gpu, GpuOptions};
 pub use error::GpuError;
 pub use memory::{Buffer, Format, Image};
 pub use plan::{
-    Binding, Blend, BufferDecl, BufferId, Depth, Draw, ImageDecl, ImageId, LeftOut, Lifetime, PassDecl, Phase, Plan,
-    Resource, Target, Topology, Work,
+    Binding, Blend, BufferDecl, BufferId, Depth, Draw, ImageDecl, ImageId, LeftOut, Lifetime, PassBuilder, PassDecl,
+    Phase, Plan, Resource, Target, Topology, Work,
 };
 pub use program::{Program, Reused};
 pub use reflect::{BlockMember, Reflection};

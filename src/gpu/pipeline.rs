@@ -255,7 +255,7 @@ impl Pipeline {
                 Some(_) => {}
             }
         }
-        for b in pass.bindings.iter().filter(|b| !self.bindings.contains_key(&b.name)) {
+        for b in pass.bindings.iter().filter(|b| !b.optional && !self.bindings.contains_key(&b.name)) {
             faults.push(format!("the pass binds '{}', which the shader does not use", b.name));
         }
         if pass.push.len() as u32 != self.push_bytes {

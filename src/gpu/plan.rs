@@ -89,6 +89,8 @@ pub struct Binding {
     pub resource: Resource,
     /// What the pass does with it.
     pub access: Access,
+    /// A variant of the shader may not use it.
+    pub optional: bool,
 }
 
 /// How fragments join what is there.
@@ -327,13 +329,20 @@ impl PassBuilder<'_> {
     }
 
     fn bind(mut self, name: &str, resource: Resource, access: Access) -> Self {
-        self.pass.bindings.push(Binding { name: name.to_owned(), resource, access });
+        self.pass.bindings.push(Binding { name: name.to_owned(), resource, access, optional: false });
         self
     }
 
     /// A storage buffer read by any stage of the pass.
     pub fn read(self, name: &str, buffer: BufferId) -> Self {
         self.bind(name, Resource::Buffer(buffer), Access::GraphicsRead)
+    }
+
+    /// A storage buffer that a variant of the shader may not use.
+    pub fn offer(self, name: &str, buffer: BufferId) -> Self {
+        let mut pass = self.read(name, buffer);
+        pass.pass.bindings.iter_mut().rev().take(1).for_each(|b| b.optional = true);
+        pass
     }
 
     /// A storage buffer written by a compute shader.

@@ -3,6 +3,7 @@
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::{
+    rc::Rc,
     sync::{Arc, atomic::Ordering::Relaxed},
     time::Instant,
 };
@@ -33,8 +34,8 @@ pub struct Reused {
 pub struct Program {
     pub(super) shared: Arc<Shared>,
     pub(super) plan: Plan,
-    pub(super) buffers: Vec<Arc<Buffer>>,
-    pub(super) images: Vec<Arc<Image>>,
+    pub(super) buffers: Vec<Rc<Buffer>>,
+    pub(super) images: Vec<Rc<Image>>,
     pub(super) pipelines: Vec<Arc<Pipeline>>,
     phases: Vec<(Phase, Vec<usize>, Timer)>,
     commands: vk::CommandBuffer,
@@ -60,7 +61,7 @@ impl Program {
             }
             buffers.push(match kept {
                 Some(kept) => kept,
-                None => Arc::new(Buffer::create(shared, &decl.name, decl.bytes, MemoryLocation::GpuOnly)?),
+                None => Rc::new(Buffer::create(shared, &decl.name, decl.bytes, MemoryLocation::GpuOnly)?),
             });
         }
         let mut images = Vec::new();
@@ -71,7 +72,7 @@ impl Program {
                 Some(kept) => kept,
                 None => {
                     let d = decl;
-                    Arc::new(Image::create(shared, &d.name, d.extent, d.layers, d.format, d.array)?)
+                    Rc::new(Image::create(shared, &d.name, d.extent, d.layers, d.format, d.array)?)
                 }
             });
         }

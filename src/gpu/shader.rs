@@ -122,9 +122,7 @@ impl Sources {
     fn key(&self, file: &str, defines: &[(String, String)], provided: &[(String, String)]) -> Key {
         let mut inputs: Vec<&[u8]> = vec![file.as_bytes(), env!("CARGO_PKG_VERSION").as_bytes()];
         embedded(&EMBEDDED, &mut inputs);
-        for (a, b) in
-            self.replaced.iter().map(|(a, b)| (a, b)).chain(defines.iter().chain(provided).map(|(a, b)| (a, b)))
-        {
+        for (a, b) in self.replaced.iter().chain(defines.iter().chain(provided).map(|(a, b)| (a, b))) {
             inputs.extend([a.as_bytes(), b.as_bytes()]);
         }
         Key::of(inputs)

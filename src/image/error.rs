@@ -5,16 +5,38 @@
 pub enum ImageError {
     /// A layer does not fit its image.
     #[error("image layer \"{name}\": {problem}")]
-    Layer { name: String, problem: String },
+    Layer {
+        /// The layer.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// A provenance entry cannot be stored in this format.
     #[error("provenance \"{name}\": {problem}")]
-    Provenance { name: String, problem: String },
+    Provenance {
+        /// The entry.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// The image has no layer or no pixel.
     #[error("an image of {width} × {height} pixels and {layers} layers has nothing to write")]
-    Empty { width: usize, height: usize, layers: usize },
+    Empty {
+        /// Pixels across.
+        width: usize,
+        /// Pixels down.
+        height: usize,
+        /// How many.
+        layers: usize,
+    },
     /// The bytes are not a file of this format, or not one that is supported.
     #[error("not a readable {format} file: {problem}")]
-    Format { format: &'static str, problem: String },
+    Format {
+        /// The format expected.
+        format: &'static str,
+        /// What is wrong with it.
+        problem: String,
+    },
 }
 
 impl ImageError {

@@ -78,7 +78,7 @@ impl Account {
 pub fn account(
     plan: &mut Plan,
     name: &str,
-    scene: SceneBuffers,
+    scene: &SceneBuffers,
     views: BufferId,
     class: PathClass,
     photons: &Photons,
@@ -89,10 +89,9 @@ pub fn account(
     let bytes = u64::from(groups) * u64::from(groups) * size_of::<AccountRow>() as u64;
     let rows = plan.buffer(name, bytes, Lifetime::Persistent);
     let (events, reflect) = light::class_defines(class);
-    plan.pass(name)
-        .phase(Phase::Account)
-        .with(scene.tracing())
-        .with([scene.lights(), ("light_views", Resource::Buffer(views))])
+    scene
+        .lights(scene.tracing(plan.pass(name).phase(Phase::Account)))
+        .read("light_views", views)
         .with(capture.1.iter().copied())
         .write("account_rows", rows)
         .provide("capture.glsl", capture.0)

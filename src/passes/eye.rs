@@ -117,7 +117,7 @@ pub struct EyeLayers {
 /// What the eye passes share.
 struct Eye<'a> {
     plan: &'a mut Plan,
-    buffers: SceneBuffers,
+    buffers: &'a SceneBuffers,
     frame: BufferId,
     gbuffer: ImageId,
     push: EyePush,
@@ -131,7 +131,7 @@ pub struct EyeScene<'a> {
     /// Its arrays.
     pub arrays: &'a SceneArrays,
     /// Its buffers.
-    pub buffers: SceneBuffers,
+    pub buffers: &'a SceneBuffers,
     /// The buffer of [`FrameData`].
     pub frame: BufferId,
     /// The camera.
@@ -188,13 +188,15 @@ fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>, samples: u32) -> ImageId {
     let seen = plan.image("eye/gbuffer", extent, Format::Rgba32u, Lifetime::Frame);
     let depth = plan.image("eye/depth", extent, Format::Depth32f, Lifetime::Frame);
     let draws = visible_draws(from.scene, from.camera, from.arrays);
-    plan.pass("eye/gbuffer")
-        .with(from.buffers.vertices())
-        .read("frame", from.frame)
-        .push(&extent.map(|s| s as i32))
-        .target(seen, 0, Some([0.0; 4]), Blend::Replace)
-        .depth(depth, true)
-        .draw(&["eye/gbuffer.vert", "eye/gbuffer.frag"], Topology::Triangles, draws);
+    let mut pass = from.buffers.vertices(plan.pass("eye/gbuffer")).read("frame", from.frame);
+    if from.buffers.has_spheres {
+        pass = pass.push(&extent.map(|s| s as i32)); // spheres are intersected by rays through the pixels
+    }
+    pass.target(seen, 0, Some([0.0; 4]), Blend::Replace).depth(depth, true).draw(
+        &["eye/gbuffer.vert", "eye/gbuffer.frag"],
+        Topology::Triangles,
+        draws,
+    );
     seen
 }
 
@@ -205,10 +207,10 @@ impl Eye<'_> {
 
     fn direct(&mut self, lights: usize) -> (ImageId, ImageId) {
         let (irradiance, radiance) = (self.target("eye/irradiance.direct"), self.target("eye/direct"));
-        let mut pass = self.plan.pass("eye/direct");
-        pass = match lights {
-            0 => pass.with(self.buffers.surfaces()),
-            _ => pass.with(self.buffers.tracing()).with([self.buffers.lights()]),
+        let pass = self.plan.pass("eye/direct");
+        let pass = match lights {
+            0 => self.buffers.surfaces(pass),
+            _ => self.buffers.lights(self.buffers.tracing(pass)),
         };
         pass.read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
@@ -222,9 +224,8 @@ impl Eye<'_> {
 
     fn surface(&mut self, provider: &SurfaceProvider) -> (ImageId, ImageId) {
         let (irradiance, radiance) = (self.target("eye/irradiance.caustic"), self.target("eye/caustic"));
-        self.plan
-            .pass("eye/surface")
-            .with(self.buffers.surfaces())
+        self.buffers
+            .surfaces(self.plan.pass("eye/surface"))
             .with(provider.reads.iter().copied())
             .provide("provider.glsl", provider.file)
             .read("frame", self.frame)
@@ -246,9 +247,8 @@ impl Eye<'_> {
     ) {
         let reads = surface.map(|s| s.reads.clone()).unwrap_or_default();
         let mut pass = self
-            .plan
-            .pass("eye/trace")
-            .with(self.buffers.tracing())
+            .buffers
+            .lights(self.buffers.tracing(self.plan.pass("eye/trace")))
             .with(reads)
             .provide("provider.glsl", surface.map_or("eye/no_surface.glsl", |s| s.file))
             .read("frame", self.frame)
@@ -257,9 +257,6 @@ impl Eye<'_> {
             .define("DEPTH", depth)
             .push(&self.push)
             .target(direct, 0, None, Blend::Add);
-        if lights > 0 {
-            pass = pass.with([self.buffers.lights()]);
-        }
         if let Some(caustic) = caustic {
             pass = pass.define("CAUSTIC", 1).target(caustic, 0, None, Blend::Add);
         }

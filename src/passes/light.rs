@@ -214,7 +214,7 @@ pub fn view_name(base: &str, scene: &Scene, all: &[Emission], index: usize) -> S
 pub fn photons(
     plan: &mut Plan,
     name: &str,
-    scene: SceneBuffers,
+    scene: &SceneBuffers,
     views: BufferId,
     class: PathClass,
     photons: &Photons,
@@ -228,8 +228,9 @@ pub fn photons(
             (format!("photons_{}", column.name()), format!("COLUMN_{}", column.name().to_uppercase()));
         pass = pass.store(&binding, image).define(&define, column.format().glsl());
     }
-    pass.with(scene.tracing())
-        .with([scene.lights(), ("light_views", Resource::Buffer(views))])
+    scene
+        .lights(scene.tracing(pass))
+        .read("light_views", views)
         .define("EVENTS", events)
         .define("REFLECT", reflect)
         .push(&sample_push(photons.side, emission, index))

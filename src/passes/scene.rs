@@ -2,7 +2,7 @@
 
 use super::accel::{Instance, SHAPE_MESH, SHAPE_QUAD, SHAPE_SPHERE, SceneArrays};
 use crate::{
-    gpu::{BufferId, Draw, Plan, Resource},
+    gpu::{BufferId, Draw, PassBuilder, Plan},
     scene::{Camera, Scene},
 };
 
@@ -11,58 +11,81 @@ const BOX_VERTICES: u32 = 36;
 /// Vertices of a quad.
 const QUAD_VERTICES: u32 = 6;
 
-/// The buffers, and what is drawn from them.
-#[derive(Clone, Copy, Debug)]
+/// The buffers that the scene's shapes need.
+#[derive(Clone, Debug)]
 pub struct SceneBuffers {
     nodes: BufferId,
-    triangles: BufferId,
-    normals: BufferId,
+    /// Triangles and their normals, if there is a mesh.
+    meshes: Option<(BufferId, BufferId)>,
     instances: BufferId,
     materials: BufferId,
-    lights: BufferId,
+    lights: Option<BufferId>,
+    /// Whether there is any sphere, any quad.
+    pub(super) has_spheres: bool,
+    has_quads: bool,
 }
 
 impl SceneBuffers {
     /// Adds them to the plan with their contents.
-    pub fn upload(plan: &mut Plan, arrays: &SceneArrays) -> Self {
+    pub fn upload(plan: &mut Plan, scene: &Scene, arrays: &SceneArrays) -> Self {
+        let any = |kind| !scene.objects.is_empty() && arrays.instances.iter().any(|i| i.kind == kind);
+        let mesh = |plan: &mut Plan| {
+            (plan.upload("scene/triangles", &arrays.triangles), plan.upload("scene/normals", &arrays.normals))
+        };
         Self {
             nodes: plan.upload("scene/nodes", &arrays.nodes),
-            triangles: plan.upload("scene/triangles", &arrays.triangles),
-            normals: plan.upload("scene/normals", &arrays.normals),
+            meshes: any(SHAPE_MESH).then(|| mesh(plan)),
             instances: plan.upload("scene/instances", &arrays.instances),
             materials: plan.upload("scene/materials", &arrays.materials),
-            lights: plan.upload("scene/lights", &arrays.lights),
+            lights: (!scene.lights.is_empty()).then(|| plan.upload("scene/lights", &arrays.lights)),
+            has_spheres: any(SHAPE_SPHERE),
+            has_quads: any(SHAPE_QUAD),
         }
     }
 
-    /// What a pass that makes surfaces from hits reads.
-    pub fn surfaces(&self) -> Vec<(&'static str, Resource)> {
-        vec![
-            ("scene_triangles", Resource::Buffer(self.triangles)),
-            ("scene_normals", Resource::Buffer(self.normals)),
-            ("scene_instances", Resource::Buffer(self.instances)),
-            ("scene_materials", Resource::Buffer(self.materials)),
-        ]
+    /// For a pass that makes surfaces from hits.
+    pub fn surfaces<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let pass = self.shapes(pass).offer("scene_instances", self.instances).offer("scene_materials", self.materials);
+        match self.meshes {
+            Some((triangles, normals)) => pass.offer("scene_triangles", triangles).offer("scene_normals", normals),
+            None => pass,
+        }
     }
 
-    /// What a pass that traces rays reads.
-    pub fn tracing(&self) -> Vec<(&'static str, Resource)> {
-        let mut all = self.surfaces();
-        all.push(("scene_nodes", Resource::Buffer(self.nodes)));
-        all
+    /// For a pass that traces rays, and makes surfaces of what they hit.
+    pub fn tracing<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        self.surfaces(pass).offer("scene_nodes", self.nodes)
     }
 
-    /// The lights.
-    pub fn lights(&self) -> (&'static str, Resource) {
-        ("scene_lights", Resource::Buffer(self.lights))
+    /// For a pass that asks the lights; nothing where there are none.
+    pub fn lights<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        match self.lights {
+            Some(lights) => pass.offer("scene_lights", lights),
+            None => pass,
+        }
     }
 
-    /// What the eye's rasteriser pulls vertices from.
-    pub fn vertices(&self) -> Vec<(&'static str, Resource)> {
-        vec![
-            ("scene_triangles", Resource::Buffer(self.triangles)),
-            ("scene_instances", Resource::Buffer(self.instances)),
-        ]
+    /// For the eye's rasteriser, which pulls vertices.
+    pub fn vertices<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let pass = self.shapes(pass).offer("scene_instances", self.instances);
+        match self.meshes {
+            Some((triangles, _)) => pass.offer("scene_triangles", triangles),
+            None => pass,
+        }
+    }
+
+    /// Kinds of shapes that the scene lacks are not compiled. (A scene without any keeps quads: shaders need one.)
+    fn shapes<'p>(&self, mut pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        if !self.has_spheres {
+            pass = pass.define("NO_SPHERES", 1);
+        }
+        if !self.has_quads && self.has_spheres {
+            pass = pass.define("NO_QUADS", 1);
+        }
+        if self.meshes.is_none() {
+            pass = pass.define("NO_MESHES", 1);
+        }
+        pass
     }
 }
 

@@ -66,10 +66,10 @@ pub fn plan(job: &Job) -> Result<Planned, RenderError> {
     let arrays = SceneArrays::build(scene).map_err(PlanError::from)?;
     let everything = extents::everything(scene);
     let mut plan = Plan::default();
-    let buffers = SceneBuffers::upload(&mut plan, &arrays);
+    let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let frame = plan.buffer("frame", size_of::<FrameData>() as u64, Lifetime::Frame);
-    let photons = photon_passes(&mut plan, job, buffers, &everything)?;
-    let from = EyeScene { scene, arrays: &arrays, buffers, frame, camera, size: job.size };
+    let photons = photon_passes(&mut plan, job, &buffers, &everything)?;
+    let from = EyeScene { scene, arrays: &arrays, buffers: &buffers, frame, camera, size: job.size };
     let provided = photons.provided.as_ref().and_then(|p| p.surface.as_ref());
     let layers = eye::passes(&mut plan, &from, settings, provided);
     Ok(Planned {
@@ -93,7 +93,7 @@ struct PhotonPasses {
 fn photon_passes(
     plan: &mut Plan,
     job: &Job,
-    buffers: SceneBuffers,
+    buffers: &SceneBuffers,
     everything: &Extent,
 ) -> Result<PhotonPasses, PlanError> {
     let (scene, settings) = (&*job.scene, &job.settings);

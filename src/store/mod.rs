@@ -44,6 +44,7 @@ impl std::fmt::Display for Key {
 /// One entry of a listing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
+    /// What it was made from.
     pub key: Key,
     /// Size on disk.
     pub bytes: u64,

@@ -6,9 +6,14 @@ pub mod random;
 
 use bytemuck::{NoUninit, Pod};
 use nephroid::{
-    gpu::{Gpu, GpuOptions, Lifetime, Phase, Plan, Program, Resource, Sources},
+    gpu::{Gpu, GpuOptions, Lifetime, PassBuilder, Phase, Plan, Program, Sources},
+    methods,
+    renderer::{self, Job, Providers},
+    scene::Scene,
+    settings::Settings,
     store::Store,
 };
+use std::sync::Arc;
 
 /// Invocations a work group of a probe.
 const GROUP: u32 = 64;
@@ -24,6 +29,9 @@ pub fn assert_quiet(gpu: &Gpu) {
     let messages = gpu.take_messages();
     assert!(messages.is_empty(), "validation: {messages:#?}");
 }
+
+/// Binds to a pass what a probe added to its plan.
+pub type Binder = Box<dyn for<'p> FnOnce(PassBuilder<'p>) -> PassBuilder<'p>>;
 
 /// A probe: GLSL that turns one `In q` into one `Out r`, run over a list.
 pub struct Probe<'a> {
@@ -48,12 +56,12 @@ impl Default for Probe<'_> {
 }
 
 impl Probe<'_> {
-    /// Runs it; `scene` adds buffers to the plan and gives the names they are bound under.
+    /// Runs it; `extra` adds buffers to the plan and gives what binds them.
     pub fn run_with<I: NoUninit, O: Pod>(
         &self,
         gpu: &Gpu,
         inputs: &[I],
-        scene: impl FnOnce(&mut Plan) -> Vec<(&'static str, Resource)>,
+        extra: impl FnOnce(&mut Plan) -> Binder,
     ) -> Vec<O> {
         let includes: String = self.includes.iter().map(|i| format!("#include \"{i}\"\n")).collect();
         let text = format!(
@@ -71,13 +79,13 @@ impl Probe<'_> {
         let mut sources = Sources::default();
         sources.replace("probe.comp", text);
         let mut plan = Plan::default();
-        let extra = scene(&mut plan);
+        let bind = extra(&mut plan);
         let from = plan.upload("inputs", inputs);
         let bytes = (inputs.len() * size_of::<O>()) as u64;
         let to = plan.buffer("outputs", bytes, Lifetime::Frame);
         let count = inputs.len() as u32;
         let pass = plan.pass("probe").read("probe_inputs", from).write("probe_outputs", to).push(&count);
-        let pass = self.defines.iter().fold(pass.with(extra), |pass, (name, value)| pass.define(name, value));
+        let pass = self.defines.iter().fold(bind(pass), |pass, (name, value)| pass.define(name, value));
         pass.dispatch("probe.comp", [count.div_ceil(GROUP).max(1), 1, 1], GROUP);
         let mut program = Program::new(gpu, plan, &sources, &Store::open(), None).expect("the probe is prepared");
         program.run(Phase::Frame, &[]).expect("the probe runs");
@@ -88,6 +96,22 @@ impl Probe<'_> {
 
     /// Runs it without a scene.
     pub fn run<I: NoUninit, O: Pod>(&self, gpu: &Gpu, inputs: &[I]) -> Vec<O> {
-        self.run_with(gpu, inputs, |_| Vec::new())
+        self.run_with(gpu, inputs, |_| Box::new(|pass| pass))
     }
+}
+
+/// A job for a shipped scene or file with method `maps`; settings by name, `scene.` among them.
+pub fn job(scene: &str, set: &[(&str, &str)], camera: &str, size: [u32; 2]) -> Job {
+    let known = renderer::all_settings();
+    let mut settings = Settings::default();
+    let mut overrides = Vec::new();
+    for (key, value) in set {
+        match key.strip_prefix("scene.") {
+            Some(path) => overrides.push((path.to_owned(), value.to_string())),
+            None => settings.set(&known, key, value).expect("the test names a setting"),
+        }
+    }
+    let scene = Scene::load(scene, &overrides).unwrap_or_else(|e| panic!("{scene}: {e}"));
+    let maps = methods::find("maps").expect("the method is in the table");
+    Job { scene: Arc::new(scene), providers: Providers::of(maps), settings, camera: camera.into(), size }
 }

@@ -80,7 +80,10 @@ fn tracks(scene: &Scene, rays: &[[f32; 6]]) -> Vec<Track> {
                }",
         ..Default::default()
     };
-    let outputs: Vec<[f32; 7]> = probe.run_with(&gpu(), rays, |plan| SceneBuffers::upload(plan, &arrays).tracing());
+    let outputs: Vec<[f32; 7]> = probe.run_with(&gpu(), rays, |plan| {
+        let buffers = SceneBuffers::upload(plan, scene, &arrays);
+        Box::new(move |pass| buffers.tracing(pass))
+    });
     let track =
         |y: &[f32; 7]| Track { t: y[0], object: y[1], eps: y[2], place: y[3], again: y[4], inside: y[5], curved: y[6] };
     outputs.iter().map(track).collect()

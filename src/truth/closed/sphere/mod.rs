@@ -35,9 +35,17 @@ pub struct GlassSphere {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Illumination {
     /// Parallel light of irradiance E⊥, W/m².
-    Parallel { irradiance: f64 },
+    Parallel {
+        /// Of a plane that faces the light, W/m².
+        irradiance: f64,
+    },
     /// A point light of intensity I (W/sr) at a distance from the centre (m, more than the radius).
-    Point { distance: f64, intensity: f64 },
+    Point {
+        /// From the sphere's centre, m.
+        distance: f64,
+        /// W/sr.
+        intensity: f64,
+    },
 }
 
 /// The arrangement has no such closed form; the message names the value and its range.

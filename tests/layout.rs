@@ -1,0 +1,50 @@
+//! Host and shader agree about every shared structure: SPIR-V member offsets against `offset_of!`.
+
+use nephroid::{
+    gpu::{Reflection, Sources},
+    passes::{accel, account::AccountRow, eye::FrameData},
+    store::Store,
+    view::ViewData,
+};
+use std::{collections::BTreeMap, mem::offset_of};
+
+/// Offsets of the members of a host structure, under the shader's name for it.
+macro_rules! host {
+    ($shader:literal, $ty:ty { $($member:ident),* $(,)? }) => {
+        ($shader, vec![$((stringify!($member), offset_of!($ty, $member))),*])
+    };
+}
+
+#[test]
+fn offsets_agree() {
+    let host = [
+        host!("Node", accel::Node { lo, count, hi, first }),
+        host!("Triangle", accel::Triangle { a, b, c }),
+        host!("TriangleNormals", accel::TriangleNormals { a, b, c }),
+        host!("Instance", accel::Instance { to_object, to_world, kind, material, object, root }),
+        host!("Material", accel::Material { kind, ior, colour, absorption }),
+        host!("Light", accel::Light { kind, vector, power }),
+        host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),
+        host!("FrameData", FrameData { eye, time, index, seed, pad }),
+        host!("View", ViewData { origin, x0, right, x1, up, y0, forward, y1, near, far, perspective, pad }),
+    ];
+    let defines: Vec<_> =
+        [("EVENTS", "2"), ("REFLECT", "0"), ("LIGHT_COUNT", "1")].map(|(a, b)| (a.to_owned(), b.to_owned())).to_vec();
+    let provided = vec![("capture.glsl".to_owned(), "maps/capture.glsl".to_owned())];
+    let mut seen: BTreeMap<(String, String), usize> = BTreeMap::new();
+    for file in ["light/account.comp", "eye/direct.frag", "eye/gbuffer.vert"] {
+        let words = Sources::default().compile(file, &defines, &provided, &Store::none()).unwrap();
+        for m in Reflection::of(&words).unwrap().members {
+            let before = seen.insert((m.structure.clone(), m.member.clone()), m.offset);
+            assert!(before.is_none_or(|b| b == m.offset), "{file}: {}.{} moves", m.structure, m.member);
+        }
+    }
+    for (structure, members) in host {
+        for (member, offset) in members {
+            let shader = seen.get(&(structure.to_owned(), member.to_owned()));
+            assert_eq!(shader, Some(&offset), "{structure}.{member}: shader, host");
+        }
+        let count = seen.keys().filter(|(s, _)| s == structure).count();
+        assert!(count > 0, "{structure} is in no shader");
+    }
+}
