@@ -79,7 +79,7 @@ fn mesh_point(arrays: &SceneArrays, random: &mut Random, corner: bool) -> (DVec3
 /// In turn: at random through the scene, grazing a triangle, along an axis at a vertex or beside it.
 fn rays(arrays: &SceneArrays) -> Vec<Row> {
     let mut random = Random(80);
-    let mut ray = |i: usize| {
+    let ray = |i: usize| {
         let (o, d) = match i % 3 {
             0 => {
                 let o = random.direction() * 4.0;

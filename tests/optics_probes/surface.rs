@@ -92,7 +92,7 @@ fn tracks(scene: &Scene, rays: &[[f32; 6]]) -> Vec<Track> {
 /// Rays at the middle of the scene from a sphere about it, some of them grazing a floor.
 fn rays(scale: f64, shift: DVec3) -> Vec<[f32; 6]> {
     let mut random = Random(70);
-    let mut ray = |i: usize| {
+    let ray = |i: usize| {
         let level = random.direction() * DVec3::new(1.0, [0.01, 1.0][i % 2], 1.0);
         let from = DVec3::new(level.x, level.y.abs(), level.z).normalize() * 4.0;
         let target = DVec3::Y * 0.5 + random.direction() * random.unit() * 1.2;
