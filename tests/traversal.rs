@@ -79,29 +79,29 @@ fn mesh_point(arrays: &SceneArrays, random: &mut Random, corner: bool) -> (DVec3
 /// In turn: at random through the scene, grazing a triangle, along an axis at a vertex or beside it.
 fn rays(arrays: &SceneArrays) -> Vec<Row> {
     let mut random = Random(80);
-    let mut ray = |i: usize| {
+    let ray = |i: usize| {
         let (o, d) = match i % 3 {
             0 => {
                 let o = random.direction() * 4.0;
                 (o, DVec3::Y * 0.5 + random.direction() * random.unit() * 1.5 - o)
             }
             1 => {
-                let (p, n) = mesh_point(arrays, &mut random, i % 2 == 0);
+                let (p, n) = mesh_point(arrays, &mut random, i.is_multiple_of(2));
                 let along = (random.direction().cross(n) + n * random.within(-1e-3, 1e-3)).normalize();
                 (p - along * 3.0, along)
             }
             _ => {
-                let (p, _) = mesh_point(arrays, &mut random, i % 2 == 0);
+                let (p, _) = mesh_point(arrays, &mut random, i.is_multiple_of(2));
                 let axis = DVec3::AXES[random.below(3)] * [1.0, -1.0][random.below(2)];
                 // Exactly the coordinates of a vertex, or one rounding beside.
-                let p = if i % 4 == 0 { p * (1.0 + random.within(-1e-7, 1e-7)) } else { p };
+                let p = if i.is_multiple_of(4) { p * (1.0 + random.within(-1e-7, 1e-7)) } else { p };
                 (p * (1.0 - axis.abs()) - axis * 4.0, axis)
             }
         };
         let (o, d) = (single(o), single(d.normalize()));
         [o[0], o[1], o[2], d[0], d[1], d[2]]
     };
-    (0..RAYS).map(|i| ray(i)).collect()
+    (0..RAYS).map(ray).collect()
 }
 
 /// How a hit of one side only is explained.

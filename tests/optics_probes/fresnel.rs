@@ -4,9 +4,9 @@ use crate::{UNIT_ROUNDOFF, root_error, squared_cosine};
 use nephroid::optics;
 
 /// Relative: some twenty operations, two of them fourth powers of the amplitudes' denominators.
-const RELATIVE: f64 = 48.0 * UNIT_ROUNDOFF;
+const RELATIVE: f64 = 12.0 * UNIT_ROUNDOFF;
 /// cos²θ after refraction is off by the rounding of the index ratio and two products, times the index squared.
-const SQUARED_COSINE: f64 = 4.0 * UNIT_ROUNDOFF;
+const SQUARED_COSINE: f64 = 2.0 * UNIT_ROUNDOFF;
 
 fn fresnel(inputs: &[[f32; 3]]) -> Vec<f32> {
     let probe = Probe {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use nephroid::optics;
 
 /// Directions: two products of unit vectors, a sum and a normalisation, times the index where it is above one.
-const DIRECTION: f64 = 16.0 * UNIT_ROUNDOFF;
+const DIRECTION: f64 = 6.0 * UNIT_ROUNDOFF;
 /// cos θ comes from a dot product of rounded unit vectors; so much is cos²θ after refraction off, times the index squared.
 const SQUARED_COSINE: f64 = 8.0 * UNIT_ROUNDOFF;
 
@@ -94,9 +94,9 @@ fn both_sides_of_the_critical_angle() {
     let steps = [-1e-3, -1e-5, -1e-6, 0.0, 1e-6, 1e-5, 1e-3];
     let inputs: Vec<[f32; 7]> = (0..7000)
         .map(|i| {
-            let eta = [1.0001, 1.33, 1.5, 2.42][(i / 7) % 4];
+            let eta: f64 = [1.0001, 1.33, 1.5, 2.42][(i / 7) % 4];
             let n = random.direction();
-            let critical = (1.0 - 1.0 / (eta * eta) as f64).sqrt();
+            let critical = (1.0 - 1.0 / (eta * eta)).sqrt();
             row(incident(&mut random, n, (critical + steps[i % 7]).clamp(0.0, 1.0)), n, eta)
         })
         .collect();
