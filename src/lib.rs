@@ -9,9 +9,13 @@
 //! | 2, what methods share | [`passes`]: the scene on the device, lights and photons, the eye |
 //! | 3 | [`methods`]: a room per paper; [`truth`]: float64, sharing no code with floors 1 to 3 |
 //! | 4 | [`renderer`]: plan → prepare → frame → read |
+//! | 5 | [`lab`]: experiments, and reports as data with their writers |
+//! | 6 | [`cli`]: the command line |
 
+pub mod cli;
 pub mod gpu;
 pub mod image;
+pub mod lab;
 pub mod methods;
 pub mod optics;
 pub mod passes;

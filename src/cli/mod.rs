@@ -1,0 +1,55 @@
+//! Floor 6: the command line. Data on stdout, progress and logs on stderr.
+//!
+//! Exit codes: 0 done, 1 failed, 2 usage, 4 no such device, 130 interrupted.
+
+mod args;
+mod failure;
+mod list;
+mod output;
+mod progress;
+mod render;
+mod signals;
+
+use std::time::Instant;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::Failure;
+
+/// Real-time caustics: what each method costs, and where its light goes.
+#[derive(Parser)]
+#[command(name = "nephroid", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 usage, 4 no such device, 130 interrupted";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a scene; write its layers, picture, timings and account of light
+    Render(args::RenderArgs),
+    /// Print what a frame would run and hold, and what it leaves out; needs no device
+    Plan(args::PlanArgs),
+    /// List devices, and which methods run on each
+    Devices(args::ListArgs),
+    /// List methods and settings, with units, defaults and ranges
+    Methods(args::ListArgs),
+    /// List the shipped scenes, or print one
+    Scenes(args::ScenesArgs),
+}
+
+impl Cli {
+    /// Runs the command; `started` is when the program was.
+    pub fn run(self, started: Instant) -> Result<(), Failure> {
+        signals::file_size_limit_is_an_error()?;
+        match self.command {
+            Command::Render(args) => render::run(&args, started),
+            Command::Plan(args) => list::plan(&args),
+            Command::Devices(args) => list::devices(&args),
+            Command::Methods(args) => list::methods(&args),
+            Command::Scenes(args) => list::scenes(&args),
+        }
+    }
+}

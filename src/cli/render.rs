@@ -1,0 +1,134 @@
+//! `nephroid render`: a job measured, and its files written whole or not at all.
+
+use std::{ops::ControlFlow, sync::atomic::Ordering::Relaxed, time::Instant};
+
+use anyhow::anyhow;
+
+use super::{
+    Failure,
+    args::RenderArgs,
+    output::{print, say},
+    progress::Progress,
+    signals,
+};
+use crate::{
+    gpu::{DeviceChoice, Gpu, GpuError, GpuOptions, Plan},
+    lab::{self, Experiment, Measured, Provenance, RenderReport, Report, Run},
+    passes::eye,
+    renderer::{self, Frame, Job, RenderError, Renderer},
+    whole::OutFolder,
+};
+
+/// Whatever can be found wrong is found before the first frame: options, scene, dumps, folder, device, in this order.
+pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
+    let job = args.job.job()?;
+    if !args.dump.is_empty() {
+        check_dumps(&args.dump, &renderer::plan(&job)?.plan)?;
+    }
+    let mut folder = OutFolder::stage(&args.out)?;
+    let run = Run::now(&args.out);
+    let gpu = open(args)?;
+    say(&format!("device: {}", gpu.info().label()));
+    let frame = Frame { time: args.time, index: 0, seed: args.seed, camera: None };
+    let experiment = Experiment { frame, warmup: args.warmup, repeat: args.repeat };
+    let (renderer, measured, startup_ms) = measure(&gpu, &job, &experiment, started)?;
+    let provenance = Provenance::new(&job, &frame, gpu.info(), arguments(std::env::args_os()));
+    let attributes = provenance.attributes();
+    let report = RenderReport::new(&job, &renderer, &measured, startup_ms, provenance, run);
+    lab::write_outputs(&mut folder, &report, &measured.layers, lab::exposure(&job.settings, &job.scene), &attributes)?;
+    for name in &args.dump {
+        lab::write_dump(&mut folder, &renderer, name, &attributes)?;
+    }
+    refuse_messages(&gpu)?;
+    folder.commit()?;
+    say(&format!("written: {}", args.out.display()));
+    print(&report.write(args.list.format)?)
+}
+
+fn open(args: &RenderArgs) -> Result<Gpu, Failure> {
+    let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
+    Ok(Gpu::new(&GpuOptions { device, validation: args.validation, capture: args.capture })?)
+}
+
+/// Prepares and runs the experiment under a bar; also says how long it took to get ready, ms.
+fn measure(
+    gpu: &Gpu,
+    job: &Job,
+    experiment: &Experiment,
+    started: Instant,
+) -> Result<(Renderer, Measured, f64), Failure> {
+    let stop = signals::stop_flag()?;
+    let progress = Progress::new(experiment);
+    let mut renderer = Renderer::new(gpu, job).map_err(|error| with_remedy(error, job))?;
+    let startup_ms = started.elapsed().as_secs_f64() * 1e3;
+    let measured = experiment.run(&mut renderer, &mut |step| {
+        progress.at(step);
+        if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    Ok((renderer, measured, startup_ms))
+}
+
+fn check_dumps(names: &[String], plan: &Plan) -> Result<(), Failure> {
+    let known = || plan.images.iter().map(|i| &i.name).chain(plan.buffers.iter().map(|b| &b.name));
+    match names.iter().find(|name| !known().any(|k| k == *name)) {
+        None => Ok(()),
+        Some(name) => {
+            let all: Vec<_> = known().map(String::as_str).collect();
+            let all = all.join(", ");
+            Err(Failure::usage(anyhow!("--dump {name}: the plan has no such image or buffer; it has: {all}")))
+        }
+    }
+}
+
+/// What does not fit is said with the options that make it as large as it is.
+fn with_remedy(error: RenderError, job: &Job) -> Failure {
+    let RenderError::Gpu(GpuError::TooLarge { name, .. }) = &error else { return error.into() };
+    let options = options_of(name.split('/').next().unwrap_or_default(), job);
+    Failure::usage(anyhow!("{error}; lower {options}"))
+}
+
+/// The options that size the resources of a group, with their values.
+fn options_of(group: &str, job: &Job) -> String {
+    let now = |key: &str| {
+        let known = renderer::all_settings();
+        known.iter().find(|s| s.key() == key).map(|s| format!("--set {key} (now {})", job.settings.text(*s)))
+    };
+    if group == "eye" {
+        let [width, height] = job.size;
+        return format!("--size (now {width}x{height}) or {}", now(eye::SAMPLES.key).unwrap_or_default());
+    }
+    now(&format!("{group}.side")).unwrap_or_else(|| "the number of triangles in the scene".to_owned())
+}
+
+fn refuse_messages(gpu: &Gpu) -> Result<(), Failure> {
+    match gpu.take_messages().as_slice() {
+        [] => Ok(()),
+        messages => Err(Failure::failed(anyhow!("validation: {}", messages.join("\nvalidation: ")))),
+    }
+}
+
+/// The arguments without the program and without `--out`, which may differ where results do not.
+fn arguments(all: impl Iterator<Item = std::ffi::OsString>) -> Vec<String> {
+    let mut kept = Vec::new();
+    let mut all = all.skip(1).map(|argument| argument.to_string_lossy().into_owned());
+    while let Some(argument) = all.next() {
+        if argument == "--out" {
+            all.next();
+        } else if !argument.starts_with("--out=") {
+            kept.push(argument);
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::arguments;
+
+    #[test]
+    fn arguments_do_not_name_the_output() {
+        let given = |line: &str| arguments(line.split(' ').map(Into::into));
+        assert_eq!(given("nephroid render null --out a --seed 1"), ["render", "null", "--seed", "1"]);
+        assert_eq!(given("nephroid render --out=a null"), ["render", "null"]);
+    }
+}

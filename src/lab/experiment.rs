@@ -1,0 +1,96 @@
+//! An experiment: one frame of a prepared scene, warmed up, timed again and again, then counted and read back.
+
+use std::ops::ControlFlow;
+
+use crate::{
+    gpu::{FrameTimes, PassCounters},
+    image::{ImageError, Layers},
+    passes::account::Account,
+    renderer::{Energy, Frame, RenderError, Renderer},
+    whole::FileError,
+};
+
+/// What can fail between a job and its files.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// Planning, preparing or rendering.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A picture that cannot be encoded.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// A file that cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Whoever watches said to stop.
+    #[error("interrupted: nothing was written")]
+    Interrupted,
+}
+
+/// Where an experiment is, told before each step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// A frame that is not timed, from 0.
+    Warmup(u32),
+    /// A timed frame, from 0.
+    Timed(u32),
+    /// Counters of each pass, then the account of photons and watts.
+    Counting,
+    /// Layers read back.
+    Reading,
+}
+
+/// How often a frame is rendered, and which.
+#[derive(Clone, Copy, Debug)]
+pub struct Experiment {
+    /// The frame: the same one every time.
+    pub frame: Frame,
+    /// Frames before timing begins.
+    pub warmup: u32,
+    /// Timed frames.
+    pub repeat: u32,
+}
+
+/// What came out of it.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// Stages in the order of [`FrameTimes::passes`].
+    pub stages: Vec<String>,
+    /// Every timed frame.
+    pub frames: Vec<FrameTimes>,
+    /// What each stage did, counted outside the timed frames.
+    pub counters: Vec<PassCounters>,
+    /// Photons and flux by how they ended.
+    pub account: Account,
+    /// The light deposited beside the light emitted.
+    pub energy: Energy,
+    /// The picture.
+    pub layers: Layers,
+}
+
+impl Experiment {
+    /// Renders, times, counts and reads; `watch` is asked before each step whether to go on.
+    pub fn run(
+        &self,
+        renderer: &mut Renderer,
+        watch: &mut dyn FnMut(Step) -> ControlFlow<()>,
+    ) -> Result<Measured, LabError> {
+        let mut at = |step| if watch(step).is_break() { Err(LabError::Interrupted) } else { Ok(()) };
+        for index in 0..self.warmup {
+            at(Step::Warmup(index))?;
+            renderer.frame(&self.frame)?;
+        }
+        let mut frames = Vec::new();
+        for index in 0..self.repeat {
+            at(Step::Timed(index))?;
+            frames.push(renderer.frame(&self.frame)?);
+        }
+        at(Step::Counting)?;
+        let (stages, counters) = renderer.counters(&self.frame)?.into_iter().unzip();
+        let account = renderer.account()?;
+        at(Step::Reading)?;
+        let energy = renderer.energy(&account)?;
+        let layers = renderer.layers()?;
+        Ok(Measured { stages, frames, counters, account, energy, layers })
+    }
+}

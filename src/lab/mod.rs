@@ -1,0 +1,22 @@
+//! Floor 5: experiments and their reports. A report is data; writers draw tables, Markdown, CSV and JSON from it and
+//! never time anything.
+
+mod catalogue;
+mod devices;
+mod experiment;
+mod files;
+mod plan_report;
+mod provenance;
+mod render_report;
+mod report;
+mod table;
+
+pub use catalogue::{MethodsReport, ScenesReport};
+pub use devices::{DeviceRow, DevicesReport};
+pub use experiment::{Experiment, LabError, Measured, Step};
+pub use files::{dump_file, write_dump, write_outputs};
+pub use plan_report::PlanReport;
+pub use provenance::{Provenance, Run, exposure};
+pub use render_report::RenderReport;
+pub use report::{Format, Report};
+pub use table::{Cell, Table};

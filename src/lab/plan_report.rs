@@ -1,0 +1,189 @@
+//! `nephroid.plan/1`: what a frame runs and holds, and what it leaves out.
+
+use serde::Serialize;
+
+use super::{Cell, Report, Table, render_report::method_name};
+use crate::{
+    gpu::{BufferDecl, ImageDecl, Lifetime, PassDecl, Phase, Plan, Work},
+    renderer::Job,
+};
+
+/// The very list that is recorded.
+#[derive(Debug, Serialize)]
+pub struct PlanReport {
+    schema: &'static str,
+    scene: String,
+    method: String,
+    camera: String,
+    size: [u32; 2],
+    passes: Vec<PassRow>,
+    resources: Vec<ResourceRow>,
+    left_out: Vec<LeftOutRow>,
+    resource_bytes: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct PassRow {
+    name: String,
+    phase: &'static str,
+    kind: &'static str,
+    shaders: Vec<String>,
+    /// Work groups, or pixels of the first target.
+    extent: [u32; 3],
+    /// Invocations a work group; 0 for draws.
+    local: u32,
+    draws: usize,
+    /// Over all draws and instances.
+    vertices: u64,
+    bytes_written: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct ResourceRow {
+    name: String,
+    kind: &'static str,
+    /// Texels and array layers; null for a buffer.
+    extent: Option<[u32; 3]>,
+    format: Option<&'static str>,
+    bytes: u64,
+    lifetime: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct LeftOutRow {
+    name: String,
+    reason: String,
+}
+
+impl PlanReport {
+    /// From a job and its plan.
+    pub fn new(job: &Job, plan: &Plan) -> Self {
+        let phases = [Phase::Prepare, Phase::Frame, Phase::Account];
+        let of_phase = |phase| plan.passes.iter().filter(move |p| p.phase == phase);
+        let images = plan.images.iter().map(ResourceRow::of_image);
+        let left_out = plan.left_out.iter().map(|l| LeftOutRow { name: l.name.clone(), reason: l.reason.clone() });
+        Self {
+            schema: "nephroid.plan/1",
+            scene: job.scene.name.clone(),
+            method: method_name(&job.providers),
+            camera: job.camera.clone(),
+            size: job.size,
+            passes: phases.into_iter().flat_map(of_phase).map(|p| PassRow::new(plan, p)).collect(),
+            resources: images.chain(plan.buffers.iter().map(ResourceRow::of_buffer)).collect(),
+            left_out: left_out.collect(),
+            resource_bytes: plan.bytes(),
+        }
+    }
+}
+
+impl PassRow {
+    fn new(plan: &Plan, pass: &PassDecl) -> Self {
+        let phase = match pass.phase {
+            Phase::Prepare => "prepare",
+            Phase::Frame => "frame",
+            Phase::Account => "account",
+        };
+        let (kind, shaders, extent, local, draws) = match &pass.work {
+            Work::Compute { shader, groups, local } => {
+                ("compute", std::slice::from_ref(shader), *groups, *local, [].as_slice())
+            }
+            Work::Raster { shaders, targets, depth, draws, .. } => {
+                let target = targets.first().map(|t| t.image).or(depth.as_ref().map(|d| d.image));
+                let [width, height] = target.map_or([0, 0], |t| plan.image_extent(t));
+                ("raster", shaders.as_slice(), [width, height, 1], 0, draws.as_slice())
+            }
+        };
+        Self {
+            name: pass.name.clone(),
+            phase,
+            kind,
+            shaders: shaders.to_vec(),
+            extent,
+            local,
+            draws: draws.len(),
+            vertices: draws.iter().map(|d| u64::from(d.vertices) * u64::from(d.instances)).sum(),
+            bytes_written: plan.bytes_written(pass),
+        }
+    }
+
+    fn work(&self) -> String {
+        let [x, y, z] = self.extent;
+        match (self.kind, self.draws) {
+            ("compute", _) => format!("{x}x{y}x{z} groups of {}", self.local),
+            (_, 1) => format!("{x}x{y}, 1 draw of {} vertices", self.vertices),
+            (_, n) => format!("{x}x{y}, {n} draws of {} vertices", self.vertices),
+        }
+    }
+}
+
+impl ResourceRow {
+    fn of_image(image: &ImageDecl) -> Self {
+        Self {
+            name: image.name.clone(),
+            kind: "image",
+            extent: Some([image.extent[0], image.extent[1], image.layers]),
+            format: Some(image.format.glsl()),
+            bytes: image.bytes(),
+            lifetime: lifetime(image.lifetime),
+        }
+    }
+
+    fn of_buffer(buffer: &BufferDecl) -> Self {
+        Self {
+            name: buffer.name.clone(),
+            kind: "buffer",
+            extent: None,
+            format: None,
+            bytes: buffer.bytes,
+            lifetime: lifetime(buffer.lifetime),
+        }
+    }
+
+    fn extent_text(&self) -> String {
+        match self.extent {
+            Some([x, y, 1]) => format!("{x}x{y}"),
+            Some([x, y, layers]) => format!("{x}x{y}, {layers} layers"),
+            None => "-".to_owned(),
+        }
+    }
+}
+
+fn lifetime(lifetime: Lifetime) -> &'static str {
+    match lifetime {
+        Lifetime::Persistent => "persistent",
+        Lifetime::Frame => "frame",
+    }
+}
+
+impl Report for PlanReport {
+    fn heading(&self) -> Vec<String> {
+        let [width, height] = self.size;
+        vec![format!("{}, method {}, camera {}, {width}x{height} pixels", self.scene, self.method, self.camera)]
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let passes = self.passes.iter().map(|p| {
+            vec![Cell::text(&p.name), Cell::text(p.phase), Cell::text(p.work()), Cell::Count(p.bytes_written)]
+        });
+        let resources = self.resources.iter().map(|r| {
+            vec![
+                Cell::text(&r.name),
+                Cell::text(r.extent_text()),
+                Cell::text(r.format.unwrap_or(r.kind)),
+                Cell::Count(r.bytes),
+                Cell::text(r.lifetime),
+            ]
+        });
+        let left_out = self.left_out.iter().map(|l| vec![Cell::text(&l.name), Cell::text(&l.reason)]);
+        let columns = vec!["resource", "extent", "format", "bytes", "lifetime"];
+        vec![
+            Table { name: "passes", columns: vec!["pass", "phase", "work", "bytes written"], rows: passes.collect() },
+            Table { name: "resources", columns, rows: resources.collect() },
+            Table { name: "left out", columns: vec!["left out", "because"], rows: left_out.collect() },
+        ]
+    }
+
+    fn notes(&self) -> Vec<String> {
+        vec![format!("resources: {} bytes in all", self.resource_bytes)]
+    }
+}

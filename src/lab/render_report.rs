@@ -1,0 +1,316 @@
+//! `nephroid.render/1`: what a render cost, and where its light went.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::{Cell, Measured, Provenance, Report, Run, Table, devices::DeviceRow, provenance::exposure};
+use crate::{
+    gpu::FrameTimes,
+    image::Layers,
+    passes::account::{Account, BUCKETS},
+    renderer::{Energy, Job, Providers, Renderer},
+    stats,
+};
+
+/// The result of `nephroid render`.
+#[derive(Debug, Serialize)]
+pub struct RenderReport {
+    schema: &'static str,
+    scene: String,
+    method: String,
+    slots: Slots,
+    camera: String,
+    size: [u32; 2],
+    settings: Map<String, Value>,
+    device: DeviceRow,
+    provenance: Provenance,
+    run: Run,
+    stages: Vec<Stage>,
+    prepare: Vec<Preparation>,
+    /// Medians over the frames.
+    #[serde(flatten)]
+    frame: Frame<f64>,
+    startup_ms: f64,
+    /// The frames themselves.
+    frames: Frame<Vec<f64>>,
+    photons: Map<String, Value>,
+    photon_bytes: u64,
+    energy: EnergyRow,
+    exposure_ev: f64,
+    nonfinite_pixels: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct Slots {
+    surface: Option<&'static str>,
+    medium: Option<&'static str>,
+}
+
+/// A stage of the frame.
+#[derive(Debug, Serialize)]
+struct Stage {
+    path: String,
+    samples_ms: Vec<f64>,
+    median_ms: f64,
+    mad_ms: f64,
+    counters: Counters,
+}
+
+/// Counted outside the timed frames; null where the device cannot count, or there is nothing of the kind.
+#[derive(Debug, Serialize)]
+struct Counters {
+    points: Option<u64>,
+    fragments: Option<u64>,
+    invocations: Option<u64>,
+    bytes: u64,
+}
+
+/// What was done once, on the host's clock.
+#[derive(Debug, Serialize)]
+struct Preparation {
+    path: &'static str,
+    ms: f64,
+}
+
+/// A frame as a whole: the sum of its stages and its span on the device's clock; wall and recording on the host's.
+#[derive(Debug, Serialize)]
+struct Frame<T> {
+    sum_ms: T,
+    span_ms: T,
+    wall_ms: T,
+    unaccounted_ms: T,
+    record_ms: T,
+}
+
+#[derive(Debug, Serialize)]
+struct EnergyRow {
+    emitted_w: f64,
+    valid_w: f64,
+    deposited_w: f64,
+    ratio: Option<f64>,
+    flux_w: Map<String, Value>,
+}
+
+impl RenderReport {
+    /// From what was measured.
+    pub fn new(
+        job: &Job,
+        renderer: &Renderer,
+        measured: &Measured,
+        startup_ms: f64,
+        provenance: Provenance,
+        run: Run,
+    ) -> Self {
+        let frames = Frame::of(&measured.frames);
+        Self {
+            schema: "nephroid.render/1",
+            scene: job.scene.name.clone(),
+            method: method_name(&job.providers),
+            slots: Slots {
+                surface: job.providers.surface.map(|m| m.name()),
+                medium: job.providers.medium.map(|m| m.name()),
+            },
+            camera: job.camera.clone(),
+            size: job.size,
+            settings: provenance.settings().clone(),
+            device: provenance.device().clone(),
+            provenance,
+            run,
+            stages: (0..measured.stages.len()).map(|at| Stage::of(measured, at)).collect(),
+            prepare: renderer.prepare_ms().iter().map(|&(path, ms)| Preparation { path, ms }).collect(),
+            frame: frames.medians(),
+            startup_ms,
+            frames,
+            photons: photons(&measured.account),
+            photon_bytes: renderer.photon_bytes(),
+            energy: EnergyRow::new(&measured.energy, &measured.account),
+            exposure_ev: exposure(&job.settings, &job.scene),
+            nonfinite_pixels: nonfinite_pixels(&measured.layers),
+        }
+    }
+}
+
+/// The methods that fill the slots, `none` where nobody does.
+pub fn method_name(providers: &Providers) -> String {
+    let names: Vec<_> = providers.methods().iter().map(|m| m.name()).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join("+") }
+}
+
+impl Stage {
+    fn of(measured: &Measured, at: usize) -> Self {
+        let samples_ms: Vec<f64> = measured.frames.iter().filter_map(|f| f.passes.get(at).copied()).collect();
+        let counted = measured.counters[at];
+        Self {
+            path: measured.stages[at].clone(),
+            median_ms: stats::median(&samples_ms),
+            mad_ms: stats::mad(&samples_ms),
+            samples_ms,
+            counters: Counters {
+                points: counted.points,
+                fragments: counted.fragments,
+                invocations: counted.invocations,
+                bytes: counted.bytes,
+            },
+        }
+    }
+}
+
+impl Frame<Vec<f64>> {
+    fn of(frames: &[FrameTimes]) -> Self {
+        let each = |ms: fn(&FrameTimes) -> f64| frames.iter().map(ms).collect();
+        Self {
+            sum_ms: each(|f| f.passes.iter().sum()),
+            span_ms: each(|f| f.span_ms),
+            wall_ms: each(|f| f.wall_ms),
+            unaccounted_ms: each(|f| f.span_ms - f.passes.iter().sum::<f64>()),
+            record_ms: each(|f| f.record_ms),
+        }
+    }
+
+    fn medians(&self) -> Frame<f64> {
+        Frame {
+            sum_ms: stats::median(&self.sum_ms),
+            span_ms: stats::median(&self.span_ms),
+            wall_ms: stats::median(&self.wall_ms),
+            unaccounted_ms: stats::median(&self.unaccounted_ms),
+            record_ms: stats::median(&self.record_ms),
+        }
+    }
+
+    /// Names and samples.
+    fn rows(&self) -> [(&'static str, &[f64]); 5] {
+        [
+            ("frame/sum", &self.sum_ms),
+            ("frame/span", &self.span_ms),
+            ("frame/unaccounted", &self.unaccounted_ms),
+            ("frame/wall", &self.wall_ms),
+            ("frame/record", &self.record_ms),
+        ]
+    }
+}
+
+fn photons(account: &Account) -> Map<String, Value> {
+    let counts = BUCKETS.iter().zip(account.counts).map(|(name, count)| (name.to_string(), count.into()));
+    counts.chain([("bent".to_owned(), account.bent.into())]).collect()
+}
+
+impl EnergyRow {
+    fn new(energy: &Energy, account: &Account) -> Self {
+        let flux = BUCKETS.iter().zip(account.flux_w).map(|(name, flux)| (name.to_string(), flux.into()));
+        Self {
+            emitted_w: energy.emitted_w,
+            valid_w: energy.valid_w,
+            deposited_w: energy.deposited_w,
+            ratio: energy.ratio,
+            flux_w: flux.chain([("other_paths".to_owned(), account.other_paths_w.into())]).collect(),
+        }
+    }
+}
+
+/// Pixels with a value that is not finite, in whichever layer.
+fn nonfinite_pixels(layers: &Layers) -> usize {
+    let mut broken = vec![false; layers.width() * layers.height()];
+    for layer in layers.iter() {
+        for (broken, pixel) in broken.iter_mut().zip(layer.pixels()) {
+            *broken |= pixel.iter().any(|value| !value.is_finite());
+        }
+    }
+    broken.into_iter().filter(|&broken| broken).count()
+}
+
+/// Decimals of milliseconds: microseconds are the finest that repeat.
+const MS: usize = 3;
+
+impl Report for RenderReport {
+    fn heading(&self) -> Vec<String> {
+        let [width, height] = self.size;
+        let device = &self.device;
+        let frames = self.frames.span_ms.len();
+        vec![
+            format!("{}, method {}, camera {}, {width}x{height} pixels", self.scene, self.method, self.camera),
+            format!("{} ({}), {}, {frames} timed frames", device.name, device.kind, device.driver),
+        ]
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        vec![self.stage_table(), self.frame_table(), self.photon_table()]
+    }
+
+    fn csv_tables(&self) -> Vec<Table> {
+        let device = [Cell::text(&self.device.name), Cell::text(self.device.kind)];
+        let row =
+            |path: &str, frame, ms: f64| [vec![Cell::text(path), frame, Cell::Real(ms, MS)], device.to_vec()].concat();
+        let samples = |path: &str, samples: &[f64]| -> Vec<_> {
+            samples.iter().enumerate().map(|(at, &ms)| row(path, Cell::Count(at as u64), ms)).collect()
+        };
+        let stages = self.stages.iter().flat_map(|s| samples(&s.path, &s.samples_ms));
+        let whole = self.frames.rows().into_iter().flat_map(|(path, ms)| samples(path, ms));
+        let prepare = self.prepare.iter().map(|p| row(p.path, Cell::None, p.ms));
+        let columns = vec!["stage", "frame", "ms", "device", "device_kind"];
+        vec![Table { name: "timings", columns, rows: stages.chain(whole).chain(prepare).collect() }]
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let energy = &self.energy;
+        let ratio = energy.ratio.map_or("no photon is valid".to_owned(), |r| format!("deposited / valid {r:.6}"));
+        let mut notes = vec![
+            format!(
+                "light: emitted {:.6} W, valid {:.6} W, deposited {:.6} W, {ratio}",
+                energy.emitted_w, energy.valid_w, energy.deposited_w
+            ),
+            format!(
+                "image.png: exposure {} EV; pixels that are not finite: {}",
+                self.exposure_ev, self.nonfinite_pixels
+            ),
+        ];
+        if self.device.software {
+            let device = &self.device.name;
+            notes.push(format!(
+                "times: {device} is a software device; they compare designs on it, and are no figures for a GPU"
+            ));
+        }
+        notes
+    }
+}
+
+impl RenderReport {
+    fn stage_table(&self) -> Table {
+        let span = self.frame.span_ms;
+        let rows = self.stages.iter().map(|s| {
+            vec![
+                Cell::text(&s.path),
+                Cell::Real(s.median_ms, MS),
+                Cell::Real(s.mad_ms, MS),
+                Cell::Real(if span > 0.0 { 100.0 * s.median_ms / span } else { 0.0 }, 1),
+                Cell::count(s.counters.points),
+                Cell::count(s.counters.fragments),
+                Cell::count(s.counters.invocations),
+                Cell::Count(s.counters.bytes),
+            ]
+        });
+        let columns =
+            vec!["stage", "median ms", "MAD ms", "% of span", "points", "fragments", "invocations", "bytes written"];
+        Table { name: "stages", columns, rows: rows.collect() }
+    }
+
+    fn frame_table(&self) -> Table {
+        let row = |path: &str, median: f64, mad| vec![Cell::text(path), Cell::Real(median, MS), mad];
+        let whole = self.frames.rows().map(|(path, ms)| row(path, stats::median(ms), Cell::Real(stats::mad(ms), MS)));
+        let once = self.prepare.iter().map(|p| row(p.path, p.ms, Cell::None));
+        let startup = row("startup", self.startup_ms, Cell::None);
+        let rows = whole.into_iter().chain(once).chain([startup]).collect();
+        Table { name: "frame", columns: vec!["frame, and once before it", "median ms", "MAD ms"], rows }
+    }
+
+    fn photon_table(&self) -> Table {
+        let of = |values: &Map<String, Value>, name: &str| values.get(name).cloned().unwrap_or_default();
+        let names = BUCKETS.into_iter().chain(["other_paths"]);
+        let row = |name: &str| {
+            let flux = of(&self.energy.flux_w, name).as_f64().unwrap_or(f64::NAN);
+            vec![Cell::text(name), Cell::count(of(&self.photons, name).as_u64()), Cell::Real(flux, 6)]
+        };
+        let none = of(&self.photons, BUCKETS[0]).as_u64() == Some(0);
+        let rows = if none { Vec::new() } else { names.map(row).collect() };
+        Table { name: "photons", columns: vec!["photons", "count", "flux W"], rows }
+    }
+}
