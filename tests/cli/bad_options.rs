@@ -1,0 +1,106 @@
+//! Options that make no sense: each named with its remedy, exit code 2 or 4, and nothing written.
+
+use crate::{Ran, nephroid, place, program};
+
+const USAGE: i32 = 2;
+const NO_DEVICE: i32 = 4;
+
+/// Options after `render`, the exit code, and what the message must say.
+const CASES: &[(&str, i32, &[&str])] = &[
+    ("glass-sphere --set light.side=-3", USAGE, &["light.side=-3", "1 to 16384 texels", "default 512"]),
+    ("glass-sphere --set light.side=64.5", USAGE, &["light.side=64.5", "1 to 16384 texels"]),
+    ("glass-sphere --set light.sied=64", USAGE, &["light.sied", "no such setting", "near: light.side"]),
+    ("glass-sphere --set nothing.like.it=1", USAGE, &["nothing.like.it", "nephroid methods"]),
+    ("glass-sphere --set light.side", USAGE, &["light.side", "KEY=VALUE"]),
+    ("glass-sphere --set =3", USAGE, &["=3", "KEY=VALUE"]),
+    ("glass-sphere --set light.view=wide", USAGE, &["light.view=wide", "fitted | shared"]),
+    ("glass-sphere --set eye.exposure=NaN", USAGE, &["eye.exposure=NaN", "-30 to 30 EV"]),
+    ("glass-sphere --set eye.samples=17", USAGE, &["eye.samples=17", "1 to 16"]),
+    ("glass-sphere --size 640", USAGE, &["640", "--size", "WIDTHxHEIGHT"]),
+    ("glass-sphere --size 0x480", USAGE, &["0x480", "each from 1"]),
+    ("glass-sphere --size 640x480x3", USAGE, &["640x480x3", "WIDTHxHEIGHT"]),
+    ("glass-sphere --size -1x5", USAGE, &["-1"]),
+    ("glass-sphere --size 70000x1", USAGE, &["70000x1", "65536"]),
+    ("glass-sphere --size 32768x1", USAGE, &["eye/", "32768x1", "lower --size (now 32768x1)", "eye.samples"]),
+    ("glass-sphere --size 4096x1 --set eye.samples=16", USAGE, &["65536x16", "lower --size", "eye.samples (now 16)"]),
+    ("glass-sphere --method map", USAGE, &["--method", "'map'", "no such method", "maps"]),
+    ("glass-sphere --method maps --surface maps", USAGE, &["--method", "--surface", "cannot be used with"]),
+    ("glass-sphere --medium maps", USAGE, &["--medium maps", "does not fill the slot medium", "not built yet"]),
+    ("glass-sphere --camera side", USAGE, &["camera side", "main, region"]),
+    ("glass-sphere --repeat 0", USAGE, &["--repeat", "0"]),
+    ("glass-sphere --warmup some", USAGE, &["--warmup", "some"]),
+    ("glass-sphere --time NaN", USAGE, &["--time", "NaN", "a number of seconds"]),
+    ("glass-sphere --seed 1.5", USAGE, &["--seed", "1.5"]),
+    ("glass-sphere --format xml", USAGE, &["--format", "xml", "table, json, csv, md"]),
+    ("glass-sphere --dump maps/nap", USAGE, &["--dump maps/nap", "maps/map", "light/photons.hit"]),
+    ("diffuse --dump maps/map", USAGE, &["--dump maps/map", "eye/radiance"]),
+    ("glass-sphere --bogus", USAGE, &["--bogus"]),
+    ("glass-sphere second", USAGE, &["second"]),
+    ("glas-sphere", USAGE, &["glas-sphere", "no such scene", "glass-sphere"]),
+    ("no/such/scene.toml", USAGE, &["no/such/scene.toml", "No such file", "check the path"]),
+    ("src/scene/", USAGE, &["src/scene/", "a folder"]),
+    ("glass-sphere --set scene.materials.glass.iro=1.3", USAGE, &["scene.materials.glass.iro", "did you mean", "ior"]),
+    ("glass-sphere --set scene.materials.glass.ior=-1", USAGE, &["--set scene.materials.glass.ior=-1", "ior"]),
+    ("glass-sphere --set scene.materials.glass.ior=wet", USAGE, &["--set scene.materials.glass.ior=wet", "a number"]),
+    ("glass-sphere --set scene.objects.ball.material=[1", USAGE, &["--set scene.objects.ball.material=[1", "TOML"]),
+    ("glass-sphere --set scene.objects.ball.material=gold", USAGE, &["gold", "glass", "white"]),
+    ("bunny --set scene.objects.bunny.file=none.obj", USAGE, &["none.obj", "No such file"]),
+    ("glass-sphere --set scene.paths=all:3", USAGE, &["all:3", "not built yet", "light.paths"]),
+    ("glass-sphere --capture", USAGE, &["--capture", "RenderDoc is not loaded", "renderdoccmd"]),
+    ("glass-sphere --device 99", NO_DEVICE, &["no device matches '99'", "present: 0"]),
+    ("glass-sphere --device voodoo", NO_DEVICE, &["no device matches 'voodoo'", "present: 0"]),
+];
+
+#[test]
+fn each_is_refused_with_its_name_and_remedy_and_nothing_is_written() {
+    for (options, code, wanted) in CASES {
+        let (folder, out) = place();
+        let ran = nephroid(&format!("render {options} --out {}", out.display()));
+        assert_eq!(ran.code, Some(*code), "{options}: {}", ran.err);
+        assert!(ran.err.starts_with("error: ") || ran.err.contains("\nerror: "), "{options}: {}", ran.err);
+        for words in *wanted {
+            assert!(ran.err.contains(words), "{options}: the message lacks {words:?}: {}", ran.err);
+        }
+        assert!(ran.out.is_empty(), "{options}: {}", ran.out);
+        assert!(crate::names(folder.path()).is_empty(), "{options}: something was written");
+    }
+}
+
+#[test]
+fn a_command_must_be_whole() {
+    for (arguments, wanted) in [
+        ("", "Usage"),
+        ("rendre glass-sphere", "render"),
+        ("render --out x", "<SCENE>"),
+        ("render glass-sphere", "--out"),
+        ("plan", "<SCENE>"),
+        ("scenes null --format json", "--format"),
+    ] {
+        let ran = nephroid(arguments);
+        assert_eq!(ran.code, Some(USAGE), "{arguments}: {}", ran.err);
+        assert!(ran.err.contains(wanted), "{arguments}: {}", ran.err);
+    }
+}
+
+#[test]
+fn without_any_device_the_exit_code_says_so() {
+    for arguments in ["devices".to_owned(), format!("render null --out {}", place().1.display())] {
+        let mut command = program();
+        command
+            .args(arguments.split(' '))
+            .env("VK_DRIVER_FILES", "/nonexistent")
+            .env("VK_ICD_FILENAMES", "/nonexistent");
+        let ran = Ran::from(command.output().unwrap());
+        assert_eq!(ran.code, Some(NO_DEVICE), "{arguments}: {}", ran.err);
+        assert!(ran.err.contains("no Vulkan device") && ran.err.contains("mesa-vulkan-drivers"), "{}", ran.err);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn arguments_that_are_no_text_are_refused() {
+    use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
+    let ran = program().args([OsStr::new("plan"), OsStr::from_bytes(b"\xff\xfe")]).output().unwrap();
+    assert_eq!(ran.status.code(), Some(USAGE));
+    assert!(!String::from_utf8_lossy(&ran.stderr).contains("panicked"));
+}
