@@ -140,18 +140,18 @@ impl View {
         })
     }
 
-    /// An orthographic view of a rectangle (half edges `u`, `v`) along its normal, from the lit side, and a margin of
-    /// `margin` of `side` texels on each side. It sees all of `everything`, before and behind the rectangle.
-    pub fn of_rectangle(center: DVec3, u: DVec3, v: DVec3, side: u32, margin: f64, everything: &Extent) -> Self {
+    /// An orthographic view of a rectangle (half edges `u`, `v`) along its normal, from the lit side, and of margins
+    /// beyond its sides (−u, −v and +u, +v; metres). It sees all of `everything`, before and behind the rectangle.
+    pub fn of_rectangle(center: DVec3, u: DVec3, v: DVec3, margins: [DVec2; 2], everything: &Extent) -> Self {
         let forward = -u.cross(v).normalize_or(DVec3::Y);
-        let inner = (f64::from(side) - 2.0 * margin).max(0.5 * f64::from(side));
-        let half = DVec2::new(u.length(), v.length()) * f64::from(side) / inner;
+        let half = DVec2::new(u.length(), v.length());
+        let (low, high) = (-half - margins[0], half + margins[1]);
         let (nearest, farthest) = everything.along(forward);
         let depth = center.dot(forward);
         let slack = half.max_element();
         let (near, far) = (nearest.min(depth) - depth - slack, farthest.max(depth) - depth + slack);
         let (right, up) = (u.normalize_or(DVec3::X), v.normalize_or(DVec3::Z));
-        Self { origin: center, right, up, forward, low: -half, high: half, near, far, perspective: false }
+        Self { origin: center, right, up, forward, low, high, near, far, perspective: false }
     }
 
     /// Where `p` is seen, each coordinate in 0..1 inside the window, y downwards; `None` before the near plane.
@@ -267,7 +267,7 @@ mod tests {
         let views = [
             View::orthographic(DVec3::new(0.0, -0.6, 0.8), &content, &content),
             View::perspective(DVec3::new(1.0, 3.0, 2.0), &content, &content).unwrap(),
-            View::of_rectangle(DVec3::ZERO, DVec3::X, DVec3::NEG_Z, 64, 3.0, &content),
+            View::of_rectangle(DVec3::ZERO, DVec3::X, DVec3::NEG_Z, [DVec2::splat(0.1), DVec2::ZERO], &content),
         ];
         for view in views {
             assert!((view.right.cross(view.up) + view.forward).length() < 1e-12, "right-handed");

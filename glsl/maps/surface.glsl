@@ -3,13 +3,12 @@
 
 layout(set = 0, binding = 12) uniform sampler2DArray maps_map; // W a texel
 
-// Zero outside: what is not in the map was counted as outside it.
+// Beyond the border as at the border: the outer half of a border texel holds no less light than the inner.
 vec3 map_texel(ivec3 at, ivec2 size) {
-    if (any(lessThan(at.xy, ivec2(0))) || any(greaterThanEqual(at.xy, size))) return vec3(0.0);
-    return texelFetch(maps_map, at, 0).rgb;
+    return texelFetch(maps_map, ivec3(clamp(at.xy, ivec2(0), size - 1), at.z), 0).rgb;
 }
 
-// Bilinear, in full precision (samplers keep 8 bits of the fraction).
+// Bilinear, in full precision (samplers keep 8 bits of the fraction). The integral over the map is its sum.
 vec3 map_flux(vec2 xy01, int layer, ivec2 size) {
     vec2 at = xy01 * vec2(size) - 0.5;
     ivec2 low = ivec2(floor(at));
@@ -28,8 +27,8 @@ vec3 surface_irradiance(vec3 p, vec3 n, uint receiver, vec2 uv) {
         View v = maps_views.data[layer];
         vec2 xy01;
         if (!map_project(v, p, n, xy01)) continue;
-        // A texel beyond the border there is nothing to blend; this also keeps huge coordinates from an int.
-        if (any(lessThan(xy01, vec2(-1.0))) || any(greaterThan(xy01, vec2(2.0)))) continue;
+        // What lands outside is counted as outside, and not in the map.
+        if (any(lessThan(xy01, vec2(0.0))) || any(greaterThan(xy01, vec2(1.0)))) continue;
         sum += map_flux(xy01, layer, size) / view_texel_area(v, size, xy01, p, n);
     }
     return sum;

@@ -4,6 +4,8 @@
 
 pub mod maps;
 
+use glam::DVec2;
+
 use crate::{
     gpu::{Feature, ImageId, Plan, Resource},
     passes::{
@@ -43,6 +45,8 @@ pub struct Job<'a> {
     pub settings: &'a Settings,
     /// The rectangle to cover: the receiver region, or the scene's extent.
     pub receiver: &'a Region,
+    /// How far its receiver goes on beyond the sides −u, −v and +u, +v, m.
+    pub beyond: [DVec2; 2],
     /// All that the scene holds.
     pub everything: &'a Extent,
     /// The emission views, in the order in which they come.

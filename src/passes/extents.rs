@@ -1,6 +1,6 @@
 //! What views have to hold: the specular objects, the receiver's rectangles, everything.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     scene::{Object, Region, Scene, Shape},
@@ -26,6 +26,17 @@ fn corners(center: DVec3, u: DVec3, v: DVec3) -> Extent {
 /// The corners of a rectangle on a receiver.
 pub fn of_region(region: &Region) -> Extent {
     corners(region.center, region.u, region.v)
+}
+
+/// How far the quad that a region lies on goes on beyond the region's sides −u, −v and +u, +v, m.
+pub fn beyond(scene: &Scene, region: &Region) -> [DVec2; 2] {
+    let Some(Shape::Quad { center, u, v }) = scene.objects.get(region.receiver).map(|o| &o.shape) else {
+        return [DVec2::INFINITY; 2];
+    };
+    let aside = region.center - *center;
+    let aside = DVec2::new(aside.dot(u.normalize_or_zero()), aside.dot(v.normalize_or_zero()));
+    let slack = DVec2::new(u.length() - region.u.length(), v.length() - region.v.length());
+    [(slack + aside).max(DVec2::ZERO), (slack - aside).max(DVec2::ZERO)]
 }
 
 /// All objects that refract or reflect.

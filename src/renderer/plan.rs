@@ -128,6 +128,7 @@ fn photon_passes(
         plan,
         settings,
         receiver,
+        beyond: extents::beyond(scene, receiver),
         everything,
         emissions: &emissions,
         lights: scene.lights.len(),

@@ -1,19 +1,17 @@
-//! Shared by the integration tests: a validated device, and shader probes that run shipped GLSL on lists of inputs.
+//! Shared by the integration tests: a validated device, shader probes that run shipped GLSL on lists of inputs, pictures.
 #![allow(dead_code)] // each test binary uses its own part
 
 pub mod cpu;
+pub mod picture;
 pub mod random;
 
 use bytemuck::{NoUninit, Pod};
 use nephroid::{
     gpu::{Gpu, GpuOptions, Lifetime, PassBuilder, Phase, Plan, Program, Sources},
-    methods,
-    renderer::{self, Job, Providers},
+    renderer::Job,
     scene::Scene,
-    settings::Settings,
     store::Store,
 };
-use std::sync::Arc;
 
 /// Invocations a work group of a probe.
 const GROUP: u32 = 64;
@@ -102,16 +100,9 @@ impl Probe<'_> {
 
 /// A job for a shipped scene or file with method `maps`; settings by name, `scene.` among them.
 pub fn job(scene: &str, set: &[(&str, &str)], camera: &str, size: [u32; 2]) -> Job {
-    let known = renderer::all_settings();
-    let mut settings = Settings::default();
-    let mut overrides = Vec::new();
-    for (key, value) in set {
-        match key.strip_prefix("scene.") {
-            Some(path) => overrides.push((path.to_owned(), value.to_string())),
-            None => settings.set(&known, key, value).expect("the test names a setting"),
-        }
-    }
+    let of_scene = |(key, value): &(&str, &str)| Some((key.strip_prefix("scene.")?.to_owned(), (*value).to_owned()));
+    let overrides: Vec<_> = set.iter().filter_map(of_scene).collect();
+    let set: Vec<_> = set.iter().filter(|(key, _)| !key.starts_with("scene.")).copied().collect();
     let scene = Scene::load(scene, &overrides).unwrap_or_else(|e| panic!("{scene}: {e}"));
-    let maps = methods::find("maps").expect("the method is in the table");
-    Job { scene: Arc::new(scene), providers: Providers::of(maps), settings, camera: camera.into(), size }
+    picture::job_of(scene, &set, camera, size)
 }

@@ -2,6 +2,8 @@
 //! Based on: C. Wyman, *Hierarchical Caustic Maps*, I3D 2008. Differs: exact tracer, own receiving view, weights that
 //! sum to one. Not implemented: its gathers `copy`, `hierarchical`, `combine` and `varying`.
 
+use glam::DVec2;
+
 use super::{Job, Method, Planned, Provided, Slot};
 use crate::{
     gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, Resource, Topology},
@@ -94,16 +96,31 @@ impl Method for Maps {
 
 /// Views that receive: one over the receiver's rectangle, which all lights share; in `shared` mode each light's own.
 ///
-/// The margin of one splat and a texel keeps every splat whole whose centre lies in the rectangle.
+/// A margin of half a splat and a texel keeps every splat whole that reaches into the rectangle. Where the receiver
+/// ends before, so does the map, and splats cut there are normalised: no light leaks over the receiver's edge.
 fn receiving_views(job: &Job<'_>, side: u32, diameter: u32) -> Vec<View> {
     if job.settings.choice(&light::VIEW) == "shared" {
         // A light that emits nothing keeps a layer, so that layers go by lights; any view serves it.
         let of_light = |l: usize| job.emissions.iter().find(|e| e.light == l).or(job.emissions.first());
         return (0..job.lights).filter_map(of_light).map(|e| e.view).collect();
     }
-    let margin = 0.5 * f64::from(diameter) + 1.0;
     let r = job.receiver;
-    vec![View::of_rectangle(r.center, r.u, r.v, side, margin, job.everything)]
+    let full = (0.5 * f64::from(diameter) + 1.0).min(0.25 * f64::from(side));
+    let half = DVec2::new(r.u.length(), r.v.length());
+    vec![View::of_rectangle(r.center, r.u, r.v, margins(half, job.beyond, side, full), job.everything)]
+}
+
+/// Margins (m) of `full` texels on each side of a rectangle, less where the receiver ends before; with them the
+/// rectangle takes `side` texels each way. The size of a texel follows from the margins and they from it: a texel that
+/// is too large makes the next one too large by at most half as much, so that repeating it settles.
+fn margins(half: DVec2, beyond: [DVec2; 2], side: u32, full: f64) -> [DVec2; 2] {
+    const ROUNDS: u32 = 60;
+    let mut texel = DVec2::ZERO;
+    for _ in 0..ROUNDS {
+        let [low, high] = beyond.map(|b| b.min(full * texel));
+        texel = (2.0 * half + low + high) / f64::from(side);
+    }
+    beyond.map(|b| b.min(full * texel))
 }
 
 struct PlannedMaps {
@@ -156,5 +173,27 @@ impl Planned for PlannedMaps {
     fn provide(&self) -> Provided {
         let reads = vec![("maps_map", Resource::Image(self.map)), self.views()];
         Provided { surface: Some(SurfaceProvider { file: "maps/surface.glsl", reads }), deposits: vec![self.map] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A few sums and quotients of numbers of order one.
+    const ROUNDING: f64 = 1e-12;
+
+    #[test]
+    fn margins_end_with_the_receiver() {
+        let half = DVec2::new(1.0, 2.0);
+        let none = [DVec2::ZERO; 2];
+        assert_eq!(margins(half, none, 64, 2.5), none, "no receiver beyond, no margin");
+        let [low, high] = margins(half, [DVec2::INFINITY; 2], 64, 2.5);
+        assert!((low - half * 5.0 / 59.0).length() < ROUNDING && low == high, "59 texels of 64 see the rectangle");
+        // On one side 0.01 m are left, on the other the whole margin: 61.5 texels see 2.01 m.
+        let [low, high] = margins(half, [DVec2::splat(0.01), DVec2::INFINITY], 64, 2.5);
+        assert!((high.x - 2.5 * 2.01 / 61.5).abs() < ROUNDING && low.x == 0.01, "{low} {high}");
+        let [low, high] = margins(half, [DVec2::INFINITY; 2], 1, 0.25);
+        assert!((low + high - 2.0 * half).length() < ROUNDING, "of a single texel half sees the rectangle");
     }
 }

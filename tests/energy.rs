@@ -1,0 +1,96 @@
+//! Every watt and every photon is accounted for, on every shipped scene.
+
+mod common;
+
+use common::{
+    gpu,
+    picture::{Picture, job_of, picture, rewritten, scene, written},
+};
+use nephroid::{
+    gpu::Gpu,
+    passes::account::{Account, BUCKETS},
+    scene::Scene,
+};
+
+/// Flux in the finished map against the flux of the photons it took: float32 sums in texels, weights that sum to one.
+const DEPOSITED: f64 = 0.001;
+/// Buckets against what was emitted: a photon's own shares are a few float32 products, 64 of them added in float32.
+const SUMS: f64 = 1e-5;
+/// The picture's flux against the map's: look-ups between texels, which weigh a texel by up to 10⁻³ too much or little
+/// where pixels and texels beat, and the map's margin, which the picture does not show.
+const PICTURED: f64 = 0.005;
+
+const SIDES: [(&str, &str); 2] = [("light.side", "256"), ("maps.side", "256")];
+
+/// Counts are exact; fluxes to rounding; deposited is what was valid, and nothing where nothing was.
+fn judge(name: &str, picture: &Picture) {
+    let Picture { account, energy, .. } = picture;
+    let Account { counts, flux_w, other_paths_w, .. } = account;
+    assert_eq!(counts[1..].iter().sum::<u64>(), counts[0], "{name}: {BUCKETS:?} {counts:?}");
+    let sum = flux_w[1..].iter().sum::<f64>() + other_paths_w;
+    assert!((sum - flux_w[0]).abs() <= SUMS * flux_w[0], "{name}: {sum} W in buckets, {} W emitted", flux_w[0]);
+    assert!(flux_w.iter().chain([other_paths_w]).all(|w| *w >= 0.0), "{name}: {flux_w:?} {other_paths_w}");
+    assert_eq!((energy.emitted_w, energy.valid_w), (flux_w[0], flux_w[1]), "{name}");
+    match energy.ratio {
+        Some(ratio) => assert!((ratio - 1.0).abs() <= DEPOSITED, "{name}: ratio {ratio}"),
+        None => assert_eq!((counts[1], energy.deposited_w), (0, 0.0), "{name}: nothing valid, nothing deposited"),
+    }
+    let ratio = energy.ratio.map_or("none".to_owned(), |r| format!("{:+.2e}", r - 1.0));
+    println!("{name}: ratio − 1 {ratio}, sum {:+.1e}, counts {counts:?}", sum / flux_w[0].max(f64::MIN_POSITIVE) - 1.0);
+}
+
+/// One scene through both views and every class of paths.
+fn all_ways(gpu: &Gpu, name: &str, scene: &Scene) {
+    for view in ["fitted", "shared"] {
+        for class in ["reflect-1", "transmit-1", "transmit-2"] {
+            let set = [SIDES[0], SIDES[1], ("light.view", view), ("light.paths", class)];
+            let picture = picture(gpu, &job_of(scene.clone(), &set, "region", [16, 16]));
+            let what = format!("{name} {view} {class}");
+            judge(&what, &picture);
+            let traces = scene.has_specular();
+            assert_eq!(picture.ran("light/photons"), traces, "{what}");
+            assert_eq!(picture.account.emitted() > 0, traces, "{what}");
+            if scene.paths.to_string() == class {
+                assert_eq!(picture.account.counts[1] > 0, traces, "{what}: the scene's own class reaches the region");
+            }
+        }
+    }
+}
+
+#[test]
+fn shipped_scenes_under_their_own_sun() {
+    let gpu = gpu();
+    for (name, _) in Scene::shipped() {
+        all_ways(&gpu, name, &scene(name, &[]));
+    }
+}
+
+/// A lamp high above in place of the sun: the buckets then weigh photons by their solid angle.
+#[test]
+fn shipped_scenes_under_a_point_light() {
+    let gpu = gpu();
+    for (name, _) in Scene::shipped() {
+        let lamp = "\n[lights.lamp.point]\nposition = [0.5, 7.0, 1.0]\nintensity = [40.0, 30.0, 20.0]\n";
+        let mut scene =
+            written(&rewritten(name, &[], lamp), &[("bunny-lo.obj", include_str!("../scenes/bunny-lo.obj"))]);
+        scene.lights.retain(|light| light.name == "lamp");
+        all_ways(&gpu, &format!("{name}, lamp"), &scene);
+    }
+}
+
+/// Coloured glass: what it absorbs is in its bucket, band by band, and the picture shows what the map holds.
+#[test]
+fn coloured_glass_absorbs_what_it_does_not_pass() {
+    let gpu = gpu();
+    let tint = [("materials.glass.absorption", "[0.1, 0.4, 2.0]")];
+    let job = job_of(scene("glass-sphere", &tint), &[SIDES[0], SIDES[1], ("eye.samples", "2")], "region", [251, 251]);
+    let picture = picture(&gpu, &job);
+    judge("coloured glass", &picture);
+    assert!(picture.account.flux_w[5] > 0.2 * picture.account.emitted_w(), "{:?}", picture.account);
+    let seen = picture.sum("irradiance.caustic") * job.scene.region.area() / (251.0 * 251.0);
+    let error = seen / picture.energy.deposited_w - 1.0;
+    println!("the picture holds {error:+.5} of the map");
+    assert!(error.abs() <= PICTURED, "{seen} W seen, {} W in the map", picture.energy.deposited_w);
+    let band = |k: usize| picture.layer("irradiance.caustic").iter().skip(k).step_by(3).sum::<f32>();
+    assert!(band(0) > band(1) && band(1) > band(2) && band(2) > 0.0, "red passes best");
+}
