@@ -62,12 +62,18 @@ impl Pool {
         unsafe { self.shared.device.reset_query_pool(self.handle, 0, self.count) }
     }
 
-    fn read<const N: usize>(&self, count: usize) -> Result<Vec<[u64; N]>, GpuError> {
+    /// `count` queries from `first`, N values each.
+    fn read<const N: usize>(&self, first: usize, count: usize) -> Result<Vec<[u64; N]>, GpuError> {
         let mut values = vec![[0u64; N]; count];
         if count > 0 {
             // SAFETY: one slice element is one query of N values; the work has ended, so nothing waits.
             unsafe {
-                self.shared.device.get_query_pool_results(self.handle, 0, &mut values, vk::QueryResultFlags::TYPE_64)
+                self.shared.device.get_query_pool_results(
+                    self.handle,
+                    first as u32,
+                    &mut values,
+                    vk::QueryResultFlags::TYPE_64,
+                )
             }
             .named("vkGetQueryPoolResults")?;
         }
@@ -150,7 +156,7 @@ impl Timer {
 
     /// Milliseconds of each pass, and the span of all.
     pub fn times(&self) -> Result<(Vec<f64>, f64), GpuError> {
-        let stamps = self.stamps.read::<1>(2 * self.passes)?;
+        let stamps = self.stamps.read::<1>(0, 2 * self.passes)?;
         let ms = |from: u64, to: u64| to.saturating_sub(from) as f64 * self.period_ms;
         let passes = stamps.chunks_exact(2).map(|pair| ms(pair[0][0], pair[1][0])).collect();
         let span = match (stamps.first(), stamps.last()) {
@@ -160,36 +166,10 @@ impl Timer {
         Ok((passes, span))
     }
 
-    /// Fragments, assembled vertices and vertex invocations of one pass.
+    /// Fragments, then assembled vertices and vertex invocations of one pass.
     pub fn counted(&self, pass: usize) -> Result<(Option<u64>, Option<[u64; 2]>), GpuError> {
-        let one = |pool: &Pool| -> Result<u64, GpuError> {
-            let mut value = [0u64];
-            // SAFETY: the query ended with the frame; one element, one value.
-            unsafe {
-                pool.shared.device.get_query_pool_results(
-                    pool.handle,
-                    pass as u32,
-                    &mut value,
-                    vk::QueryResultFlags::TYPE_64,
-                )
-            }
-            .named("vkGetQueryPoolResults")?;
-            Ok(value[0])
-        };
-        let two = |pool: &Pool| -> Result<[u64; 2], GpuError> {
-            let mut value = [[0u64; 2]];
-            // SAFETY: as above, two values a query.
-            unsafe {
-                pool.shared.device.get_query_pool_results(
-                    pool.handle,
-                    pass as u32,
-                    &mut value,
-                    vk::QueryResultFlags::TYPE_64,
-                )
-            }
-            .named("vkGetQueryPoolResults")?;
-            Ok(value[0])
-        };
-        Ok((self.fragments.as_ref().map(one).transpose()?, self.statistics.as_ref().map(two).transpose()?))
+        let fragments = self.fragments.as_ref().map(|pool| pool.read::<1>(pass, 1)).transpose()?;
+        let statistics = self.statistics.as_ref().map(|pool| pool.read::<2>(pass, 1)).transpose()?;
+        Ok((fragments.map(|f| f[0][0]), statistics.map(|s| s[0])))
     }
 }

@@ -1,13 +1,7 @@
 //! The account of every photon and every watt: taken once, outside the timed frames.
 
-use super::{
-    light::{self, Emission, GROUP, Photons},
-    scene::SceneBuffers,
-};
-use crate::{
-    gpu::{BufferId, Lifetime, Phase, Plan, Resource},
-    scene::PathClass,
-};
+use super::light::Tracing;
+use crate::gpu::{BufferId, Lifetime, Phase, Plan, Resource};
 
 /// Statuses a photon can end in, and `emitted` in place 0 (`glsl/shared/photon.glsl`).
 pub const STATUSES: usize = 8;
@@ -74,30 +68,20 @@ impl Account {
 }
 
 /// Adds the pass over one view; `capture` says which photons the method takes, and what it reads to know.
-#[allow(clippy::too_many_arguments)] // a pass reads what it reads
 pub fn account(
     plan: &mut Plan,
     name: &str,
-    scene: &SceneBuffers,
-    views: BufferId,
-    class: PathClass,
-    photons: &Photons,
-    (emission, index): (&Emission, usize),
+    tracing: &Tracing<'_>,
     capture: &(&'static str, Vec<(&'static str, Resource)>),
 ) -> BufferId {
-    let groups = photons.side.div_ceil(GROUP);
-    let bytes = u64::from(groups) * u64::from(groups) * size_of::<AccountRow>() as u64;
+    let bytes = u64::from(tracing.groups()).pow(2) * size_of::<AccountRow>() as u64;
     let rows = plan.buffer(name, bytes, Lifetime::Persistent);
-    let (events, reflect) = light::class_defines(class);
-    scene
-        .lights(scene.tracing(plan.pass(name).phase(Phase::Account)))
-        .read("light_views", views)
+    let pass = plan
+        .pass(name)
+        .phase(Phase::Account)
         .with(capture.1.iter().copied())
-        .write("account_rows", rows)
         .provide("capture.glsl", capture.0)
-        .define("EVENTS", events)
-        .define("REFLECT", reflect)
-        .push(&light::sample_push(photons.side, emission, index))
-        .dispatch("light/account.comp", [groups, groups, 1], GROUP * GROUP);
+        .write("account_rows", rows);
+    tracing.dispatch(pass, "light/account.comp");
     rows
 }

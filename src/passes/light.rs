@@ -5,7 +5,7 @@
 
 use super::{PlanError, extents, scene::SceneBuffers};
 use crate::{
-    gpu::{BufferId, Format, ImageId, Lifetime, Plan, Resource},
+    gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
     scene::{LightKind, PathClass, Region, Scene},
     settings::{Choice, Setting, Settings, Whole},
     view::View,
@@ -45,7 +45,7 @@ pub static SETTINGS: &[Setting] =
     &[Setting::Whole(&SIDE), Setting::Choice(&VIEW), Setting::Choice(&TRACER), Setting::Choice(&PATHS)];
 
 /// Invocations along one side of the dispatch's work groups.
-pub(super) const GROUP: u32 = 8;
+const GROUP: u32 = 8;
 
 /// A column of the photon buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -180,25 +180,10 @@ pub fn photon_buffer(plan: &mut Plan, settings: &Settings, columns: &[Column]) -
 /// Push constants of `glsl/light/sample.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[allow(missing_docs)] // the members are those of the shader
-pub struct SamplePush {
-    pub size: [i32; 2],
-    pub light: u32,
-    pub view: u32,
-}
-
-/// What identifies a view of a light to the shaders.
-pub(super) fn sample_push(side: u32, emission: &Emission, index: usize) -> SamplePush {
-    SamplePush { size: [side as i32; 2], light: emission.light as u32, view: index as u32 }
-}
-
-/// Defines of `glsl/light/tracer.glsl`.
-pub(super) fn class_defines(class: PathClass) -> (u32, u32) {
-    match class {
-        PathClass::Reflect1 => (1, 1),
-        PathClass::Transmit1 => (1, 0),
-        PathClass::Transmit2 | PathClass::All(_) => (2, 0),
-    }
+struct SamplePush {
+    size: [i32; 2],
+    light: u32,
+    view: u32,
 }
 
 /// The name of a pass of view `index`: plain where there is one view only.
@@ -210,29 +195,58 @@ pub fn view_name(base: &str, scene: &Scene, all: &[Emission], index: usize) -> S
     if of_light > 1 { format!("{base}:{name}.{before}") } else { format!("{base}:{name}") }
 }
 
-/// The tracer over one view: `light/photons`.
-pub fn photons(
-    plan: &mut Plan,
-    name: &str,
-    scene: &SceneBuffers,
-    views: BufferId,
-    class: PathClass,
-    photons: &Photons,
-    (emission, index): (&Emission, usize),
-) {
-    let groups = photons.side.div_ceil(GROUP);
-    let (events, reflect) = class_defines(class);
+/// The tracer over one view, which several passes run.
+#[derive(Clone, Copy)]
+pub struct Tracing<'a> {
+    /// The scene's buffers.
+    pub scene: &'a SceneBuffers,
+    /// The buffer of all emission views.
+    pub views: BufferId,
+    /// The path class.
+    pub class: PathClass,
+    /// The photon buffer.
+    pub photons: &'a Photons,
+    /// The view.
+    pub emission: &'a Emission,
+    /// Its place among the views.
+    pub index: usize,
+}
+
+impl Tracing<'_> {
+    /// Work groups along one side.
+    pub fn groups(&self) -> u32 {
+        self.photons.side.div_ceil(GROUP)
+    }
+
+    /// Gives a pass what the tracer reads, and dispatches it over the view.
+    pub fn dispatch(&self, pass: PassBuilder<'_>, shader: &str) {
+        let (events, reflect) = match self.class {
+            PathClass::Reflect1 => (1, 1),
+            PathClass::Transmit1 => (1, 0),
+            PathClass::Transmit2 | PathClass::All(_) => (2, 0), // `paths` refuses `all`
+        };
+        let push = SamplePush {
+            size: [self.photons.side as i32; 2],
+            light: self.emission.light as u32,
+            view: self.index as u32,
+        };
+        self.scene
+            .lights(self.scene.tracing(pass))
+            .read("light_views", self.views)
+            .define("EVENTS", events)
+            .define("REFLECT", reflect)
+            .push(&push)
+            .dispatch(shader, [self.groups(), self.groups(), 1], GROUP * GROUP);
+    }
+}
+
+/// Photons of one view into their columns: `light/photons`.
+pub fn photons(plan: &mut Plan, name: &str, tracing: &Tracing<'_>) {
     let mut pass = plan.pass(name);
-    for &(column, image) in &photons.columns {
-        let (binding, define) =
-            (format!("photons_{}", column.name()), format!("COLUMN_{}", column.name().to_uppercase()));
+    for &(column, image) in &tracing.photons.columns {
+        let binding = format!("photons_{}", column.name());
+        let define = format!("COLUMN_{}", column.name().to_uppercase());
         pass = pass.store(&binding, image).define(&define, column.format().glsl());
     }
-    scene
-        .lights(scene.tracing(pass))
-        .read("light_views", views)
-        .define("EVENTS", events)
-        .define("REFLECT", reflect)
-        .push(&sample_push(photons.side, emission, index))
-        .dispatch("light/photons.comp", [groups, groups, 1], GROUP * GROUP);
+    tracing.dispatch(pass, "light/photons.comp");
 }

@@ -138,12 +138,11 @@ fn photon_passes(
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {
         let name_of = |base: &str| light::view_name(base, scene, &emissions, index);
-        let at = (emission, index);
-        light::photons(work.plan, &name_of("light/photons"), buffers, views, class, &photons, at);
+        let tracing = light::Tracing { scene: buffers, views, class, photons: &photons, emission, index };
+        light::photons(work.plan, &name_of("light/photons"), &tracing);
         planned.gather(&mut work, index, &name_of);
-        let (plan, capture) = (&mut *work.plan, planned.capture());
         let name = name_of("light/account");
-        accounts.push(account::account(plan, &name, buffers, views, class, &photons, at, &capture));
+        accounts.push(account::account(work.plan, &name, &tracing, &planned.capture()));
     }
     Ok(PhotonPasses { provided: Some(planned.provide()), accounts, bytes_each: photons.bytes_each() })
 }
