@@ -142,3 +142,18 @@ fn an_image_beyond_the_device_is_refused_by_name() {
     let text = prepare(&gpu, plan, &Sources::default(), None).err().expect("too large").to_string();
     assert!(text.contains("light/photons.hit"), "{text}");
 }
+
+#[test]
+fn a_plan_beyond_the_device_s_memory_is_refused_before_anything_is_allocated() {
+    let gpu = gpu();
+    let side = gpu.info().max_image_side;
+    let each = u64::from(side) * u64::from(side) * 16;
+    let mut plan = Plan::default();
+    for k in 0..=gpu.info().memory_bytes / each {
+        plan.image(&format!("large/{k}"), [side, side], Format::Rgba32f, Lifetime::Frame);
+    }
+    let text = prepare(&gpu, plan, &Sources::default(), None).err().expect("too large").to_string();
+    assert!(text.contains("large/") && text.contains("light.side"), "{text}");
+    assert!(gpu.live_allocations().is_empty());
+    assert_quiet(&gpu);
+}

@@ -73,6 +73,8 @@ pub struct DeviceInfo {
     pub max_buffer_range: u64,
     /// Largest point size, pixels.
     pub max_point_size: f32,
+    /// Its own memory, bytes: the largest heap that is local to it.
+    pub memory_bytes: u64,
     pub(super) physical: vk::PhysicalDevice,
     pub(super) queue_family: u32,
 }
@@ -114,7 +116,7 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
     let mut has13 = vk::PhysicalDeviceVulkan13Features::default();
     let mut stream = vk::PhysicalDeviceTransformFeedbackFeaturesEXT::default();
     // SAFETY: all queries are on a physical device of this live instance; structures the device does not know stay zero.
-    let (properties, extensions, families, blend) = unsafe {
+    let (properties, extensions, families, blend, memory) = unsafe {
         let plain = instance.get_physical_device_properties(physical);
         if plain.api_version >= vk::API_VERSION_1_2 {
             let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut ids).push_next(&mut driver);
@@ -125,8 +127,10 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
             instance.enumerate_device_extension_properties(physical).named("vkEnumerateDeviceExtensionProperties")?,
             instance.get_physical_device_queue_family_properties(physical),
             instance.get_physical_device_format_properties(physical, vk::Format::R32G32B32A32_SFLOAT),
+            instance.get_physical_device_memory_properties(physical),
         )
     };
+    let local = memory.memory_heaps_as_slice().iter().filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
     let has_extension = |name: &CStr| extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(name));
     let mut features = vk::PhysicalDeviceFeatures2::default();
     if properties.api_version >= vk::API_VERSION_1_3 {
@@ -199,6 +203,7 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
         max_image_side: properties.limits.max_image_dimension2_d,
         max_buffer_range: properties.limits.max_storage_buffer_range.into(),
         max_point_size: properties.limits.point_size_range[1],
+        memory_bytes: local.map(|h| h.size).max().unwrap_or(0),
         physical,
         queue_family: queue_family.unwrap_or(0) as u32,
     })

@@ -4,6 +4,7 @@ use ash::{ext, khr, vk};
 use gpu_allocator::{AllocatorDebugSettings, vulkan as memory};
 use std::{
     ffi::{CStr, CString},
+    io::Write,
     mem::ManuallyDrop,
     sync::{
         Arc, Mutex, MutexGuard,
@@ -290,7 +291,7 @@ impl Drop for Shared {
             self.pipelines.destroy(&self.device);
             self.device.destroy_command_pool(self.pool, None);
             for leak in self.allocator().generate_report().allocations {
-                eprintln!("leaked device memory: {} ({} bytes)", leak.name, leak.size);
+                let _ = writeln!(std::io::stderr(), "leaked device memory: {} ({} bytes)", leak.name, leak.size);
             }
             ManuallyDrop::drop(&mut self.allocator);
             self.device.destroy_device(None);

@@ -7,6 +7,7 @@ use gpu_allocator::{
 };
 use std::{
     cell::RefCell,
+    io::Write,
     sync::{Arc, atomic::Ordering::Relaxed},
 };
 
@@ -105,7 +106,8 @@ impl Drop for Memory {
         if let Some(allocation) = self.allocation.take()
             && let Err(e) = self.shared.allocator().free(allocation)
         {
-            eprintln!("device memory could not be freed: {e}");
+            // Not `eprintln!`, which panics where standard error cannot be written.
+            let _ = writeln!(std::io::stderr(), "device memory could not be freed: {e}");
         }
     }
 }

@@ -3,6 +3,7 @@
 use ash::{ext::debug_utils, vk};
 use std::{
     ffi::{CStr, c_void},
+    io::Write,
     sync::Mutex,
 };
 
@@ -44,7 +45,7 @@ impl Drop for Messages {
         // SAFETY: created by this loader, destroyed once.
         unsafe { self.loader.destroy_debug_utils_messenger(self.messenger, None) }
         for text in self.take() {
-            eprintln!("validation: {text}");
+            let _ = writeln!(std::io::stderr(), "validation: {text}");
         }
     }
 }

@@ -47,6 +47,7 @@ impl Program {
     /// Allocates, compiles and uploads what the plan lists; `old` gives what did not change.
     pub fn new(gpu: &Gpu, plan: Plan, sources: &Sources, store: &Store, old: Option<Self>) -> Result<Self, GpuError> {
         let shared = &gpu.0;
+        check_memory(shared, &plan)?;
         let pipelines =
             plan.passes.iter().map(|p| prepare_pass(shared, &plan, p, sources, store)).collect::<Result<_, _>>()?;
         let old = old.as_ref();
@@ -312,6 +313,24 @@ impl Drop for Program {
             self.shared.device.destroy_fence(self.fence, None);
         }
     }
+}
+
+/// Refuses a plan that the device's memory cannot hold, before anything is allocated.
+fn check_memory(shared: &Shared, plan: &Plan) -> Result<(), GpuError> {
+    let (bytes, memory) = (plan.bytes(), shared.info.memory_bytes);
+    if bytes <= memory {
+        return Ok(());
+    }
+    let images = plan.images.iter().map(|i| (i.bytes(), &i.name));
+    let largest = images.chain(plan.buffers.iter().map(|b| (b.bytes, &b.name))).max();
+    let name = largest.map(|(_, name)| name.clone()).unwrap_or_default();
+    let gib = |bytes: u64| bytes as f64 / (1u64 << 30) as f64;
+    let text = format!(
+        "the plan needs {:.2} GiB, the device has {:.2} GiB; lower light.side, maps.side, eye.samples or --size",
+        gib(bytes),
+        gib(memory)
+    );
+    Err(GpuError::TooLarge { name, text })
 }
 
 fn count(reused: &mut Reused, kept: bool) {

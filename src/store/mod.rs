@@ -180,7 +180,10 @@ fn is_writable(folder: &Path) -> bool {
 fn warn_once(problem: &str) {
     static SAID: Once = Once::new();
     SAID.call_once(|| {
-        eprintln!("nephroid: {problem}; nothing is kept for the next run. NEPHROID_CACHE names another folder.");
+        let _ = writeln!(
+            std::io::stderr(),
+            "nephroid: {problem}; nothing is kept for the next run. NEPHROID_CACHE names another folder."
+        );
     });
 }
 
