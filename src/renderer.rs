@@ -5,11 +5,13 @@ mod read;
 
 use std::{sync::Arc, time::Instant};
 
+use glam::DVec3;
+
 use crate::{
     gpu::{Feature, FrameTimes, Gpu, GpuError, PassCounters, Phase, Plan, Program, Reused, Sources},
     methods::Method,
     passes::{
-        PlanError,
+        PlanError, accel,
         account::{Account, AccountRow},
         extents,
         eye::{self, FrameData},
@@ -72,7 +74,10 @@ pub struct Renderer {
     gpu: Gpu,
     planned: Planned,
     program: Program,
+    camera: Camera,
     eye: View,
+    /// Where the eye was last, and in which medium.
+    eye_medium: (DVec3, u32),
     scene: Arc<Scene>,
     sources: Sources,
     store: Store,
@@ -160,9 +165,11 @@ impl Renderer {
         let passes_ms = start.elapsed().as_secs_f64() * 1e3;
         let prepare_ms =
             vec![("prepare/plan", plan_ms), ("prepare/program", program_ms), ("prepare/passes", passes_ms)];
-        let eye = eye::view(job.camera()?, job.size, &extents::everything(&job.scene));
-        let scene = job.scene.clone();
-        Ok(Self { gpu: gpu.clone(), planned, program, eye, scene, sources, store, prepare_ms })
+        let camera = job.camera()?.clone();
+        let eye = eye::view(&camera, job.size, &extents::everything(&job.scene));
+        let eye_medium = (eye.origin, accel::medium_index(job.scene.medium_of_eye(&camera, eye.origin)));
+        let (gpu, scene) = (gpu.clone(), job.scene.clone());
+        Ok(Self { gpu, planned, program, camera, eye, eye_medium, scene, sources, store, prepare_ms })
     }
 
     /// What is recorded every frame.
@@ -220,8 +227,13 @@ impl Renderer {
         Ok(Account::of(&rows))
     }
 
-    fn frame_data(&self, frame: &Frame) -> FrameData {
-        let eye = frame.camera.unwrap_or(self.eye).data();
-        FrameData { eye, time: frame.time as f32, index: frame.index, seed: frame.seed, pad: 0 }
+    fn frame_data(&mut self, frame: &Frame) -> FrameData {
+        let eye = frame.camera.unwrap_or(self.eye);
+        if self.eye_medium.0 != eye.origin {
+            let medium = self.scene.medium_of_eye(&self.camera, eye.origin);
+            self.eye_medium = (eye.origin, accel::medium_index(medium));
+        }
+        let (time, eye_medium) = (frame.time as f32, self.eye_medium.1);
+        FrameData { eye: eye.data(), time, index: frame.index, seed: frame.seed, eye_medium }
     }
 }

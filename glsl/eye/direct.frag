@@ -7,11 +7,10 @@
 
 #include "eye/direct.glsl"
 #include "eye/gbuffer.glsl"
+#include "eye/medium.glsl"
 
 layout(location = 0) out vec4 irradiance;
 layout(location = 1) out vec4 radiance;
-
-const float PI = 3.14159265358979;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -29,7 +28,7 @@ void main() {
         }
         vec3 e = direct_irradiance(s, d);
         irradiance.rgb += e;
-        radiance.rgb += e * m.colour / PI;
+        radiance.rgb += e * m.colour / PI * eye_transmits(s.p);
     }
     irradiance /= float(samples);
     radiance /= float(samples);

@@ -3,8 +3,7 @@
 #define DIRECT_GLSL
 
 #include "shared/interface.glsl"
-
-const float UNBOUNDED = 3.0e38;
+#include "shared/transport.glsl"
 
 // Irradiance (W/m^2) of all lights at s, seen along d.
 vec3 direct_irradiance(Surface s, vec3 d) {
@@ -14,14 +13,14 @@ vec3 direct_irradiance(Surface s, vec3 d) {
     for (int k = 0; k < LIGHT_COUNT; k++) {
         Light light = scene_lights.data[k];
         vec3 towards = -light.vector;
-        float reach = UNBOUNDED;
+        float reach = FAR;
         vec3 facing = light.power; // irradiance of a plane that faces the light
         if (light.kind == LIGHT_POINT) {
             vec3 way = light.vector - s.p;
             towards = safe_normalize(way, vec3(0.0));
             reach = dot(way, towards);
             if (!(reach > 0.0)) continue; // the light is at the point: it has no direction
-            facing = light.power / max(reach * reach, 1e-30);
+            facing = light.power / max(reach * reach, 1e-30) * medium_transmits(light.medium, reach);
         }
         float cosine = dot(shading, towards);
         if (!(cosine > 0.0) || !(dot(geometric, towards) > 0.0)) continue;

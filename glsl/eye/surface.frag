@@ -5,12 +5,11 @@
 // Slot `surface` seen by the eye: what a provider's `surface_irradiance` says, the mean of a pixel's samples.
 
 #include "eye/gbuffer.glsl"
+#include "eye/medium.glsl"
 #include "provider.glsl"
 
 layout(location = 0) out vec4 irradiance;
 layout(location = 1) out vec4 radiance;
-
-const float PI = 3.14159265358979;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -25,7 +24,7 @@ void main() {
         if (m.kind != MATERIAL_DIFFUSE) continue;
         vec3 e = surface_irradiance(s.p, facing_normal(s, d), s.object, s.uv);
         irradiance.rgb += e;
-        radiance.rgb += e * m.colour / PI;
+        radiance.rgb += e * m.colour / PI * eye_transmits(s.p);
     }
     irradiance /= float(samples);
     radiance /= float(samples);

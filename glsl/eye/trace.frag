@@ -7,6 +7,7 @@
 
 #include "eye/direct.glsl"
 #include "eye/gbuffer.glsl"
+#include "eye/medium.glsl"
 #include "provider.glsl"
 
 layout(location = 0) out vec4 direct;
@@ -16,9 +17,6 @@ layout(location = 1) out vec4 caustic;
 vec4 caustic; // no provider: nothing to write
 #endif
 
-const float PI = 3.14159265358979;
-const float FAR = 3.0e38;
-const uint MEDIUM_AIR = 0xffffffffu;
 const float FAINT = 1e-4; // a branch that carries less of what the eye sees is left
 
 struct Branch {
@@ -60,15 +58,8 @@ void split(Surface s, vec3 d, vec3 share, uint medium, int events) {
     follow(s, reflected, share * reflectance, medium, events + 1);
 }
 
-vec3 medium_transmits(uint medium, float metres) {
-    return medium == MEDIUM_AIR ? vec3(1.0) : absorb(scene_materials.data[medium].absorption, metres);
-}
-
 void look(Surface s, vec3 d) {
-    bool inside = dot(d, s.ng) > 0.0 && scene_materials.data[s.material].kind == MATERIAL_DIELECTRIC;
-    uint medium = inside ? s.material : MEDIUM_AIR;
-    vec3 first = inside ? medium_transmits(medium, length(s.p - frame.data.eye.origin)) : vec3(1.0);
-    split(s, d, first, medium, 0);
+    split(s, d, eye_transmits(s.p), frame.data.eye_medium, 0);
     while (branch_count > 0) {
         Branch b = branches[--branch_count];
         Hit hit;

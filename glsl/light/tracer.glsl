@@ -7,14 +7,12 @@
 
 #include "shared/interface.glsl"
 #include "shared/photon.glsl"
-
-const float FAR = 3.0e38;
-const uint MEDIUM_AIR = 0xffffffffu; // a medium is named by its material
+#include "shared/transport.glsl"
 
 // Takes from the photon what the medium absorbs on a way.
 void travel(inout Photon p, uint medium, float metres) {
     if (medium == MEDIUM_AIR) return;
-    vec3 left = p.flux * absorb(scene_materials.data[medium].absorption, metres);
+    vec3 left = p.flux * medium_transmits(medium, metres);
     p.absorbed += p.flux - left;
     p.flux = left;
 }
@@ -70,7 +68,7 @@ Photon trace_photon(LightSample light) {
     if (!is_emitted(light, found, hit)) return p;
     p.emitted = light.flux;
     p.flux = light.flux;
-    uint medium = MEDIUM_AIR;
+    uint medium = light.medium;
     for (int events = 0; events <= EVENTS; events++) {
         if (!found) {
             p.status = PHOTON_MISSED;
@@ -78,11 +76,6 @@ Photon trace_photon(LightSample light) {
         }
         Surface s = surface_at(o, d, hit);
         bool diffuse = material_mask(s.material) == MASK_DIFFUSE;
-        // A light inside a dielectric: its first ray meets the surface from within.
-        if (events == 0 && !diffuse && scene_materials.data[s.material].kind == MATERIAL_DIELECTRIC &&
-            dot(d, s.ng) > 0.0) {
-            medium = s.material;
-        }
         travel(p, medium, hit.t);
         if (!any(greaterThan(p.flux, zero))) {
             p.status = PHOTON_ABSORBED;

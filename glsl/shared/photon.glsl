@@ -21,6 +21,7 @@ struct LightSample {
     vec3 direction;
     vec3 flux;       // W
     float footprint; // m^2 (directional) or sr (point): the part of the light it stands for
+    uint medium;     // that it starts in
 };
 
 struct Photon {

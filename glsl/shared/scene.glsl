@@ -50,6 +50,7 @@ struct Light {
     uint kind;
     vec3 vector; // directional: unit direction of travel; point: position
     vec3 power;  // directional: irradiance of a plane facing it, W/m^2; point: intensity, W/sr
+    uint medium; // the material that a point light is in, or MEDIUM_AIR
 };
 
 const uint LIGHT_DIRECTIONAL = 0u;

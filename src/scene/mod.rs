@@ -17,6 +17,7 @@ mod file;
 mod load;
 mod locate;
 mod measure;
+mod medium;
 mod mesh;
 mod obj;
 mod object;
@@ -239,7 +240,7 @@ pub struct Camera {
     pub target: DVec3,
     /// Unit vector, upright in the picture.
     pub up: DVec3,
-    /// Leaves out every specular object, so that the receiver is seen bare.
+    /// Leaves out every specular object and its medium, so that the receiver is seen bare.
     pub hides_specular: bool,
 }
 

@@ -72,7 +72,12 @@ pub struct Light {
     pub vector: [f32; 3],
     /// Directional: W/m² on a plane facing it; point: W/sr.
     pub power: [f32; 3],
+    /// Index of the material that a point light is in, or [`MEDIUM_AIR`].
+    pub medium: u32,
 }
+
+/// No medium.
+pub const MEDIUM_AIR: u32 = u32::MAX;
 
 /// Unit sphere at the origin.
 pub const SHAPE_SPHERE: u32 = 0;

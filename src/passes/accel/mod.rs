@@ -75,7 +75,7 @@ impl SceneArrays {
             triangles: filled(meshes.triangles),
             normals: filled(meshes.normals),
             materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
-            lights: filled(scene.lights.iter().map(light).collect::<Result<_, _>>()?),
+            lights: filled(scene.lights.iter().map(|one| light(scene, one)).collect::<Result<_, _>>()?),
         };
         check_count("nodes", arrays.nodes.len(), LARGEST_INDEX)?;
         Ok(arrays)
@@ -221,13 +221,20 @@ fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
     })
 }
 
-fn light(light: &crate::scene::Light) -> Result<Light, AccelError> {
-    let (kind, at, power) = match light.kind {
-        LightKind::Directional { direction, irradiance } => (LIGHT_DIRECTIONAL, direction, irradiance),
-        LightKind::Point { position, intensity } => (LIGHT_POINT, position, intensity),
+/// The medium in the numbers of the shaders.
+pub fn medium_index(medium: Option<usize>) -> u32 {
+    medium.map_or(MEDIUM_AIR, |m| m as u32)
+}
+
+/// Parallel light has no place: it comes through air.
+fn light(scene: &Scene, light: &crate::scene::Light) -> Result<Light, AccelError> {
+    let (kind, at, power, medium) = match light.kind {
+        LightKind::Directional { direction, irradiance } => (LIGHT_DIRECTIONAL, direction, irradiance, None),
+        LightKind::Point { position, intensity } => (LIGHT_POINT, position, intensity, scene.medium_at(position)),
     };
     let power = vector(&light.name, "its power", power.into())?;
-    Ok(Light { kind, vector: vector(&light.name, "its place or direction", at)?, power })
+    let vector = vector(&light.name, "its place or direction", at)?;
+    Ok(Light { kind, vector, power, medium: medium_index(medium) })
 }
 
 fn rows(name: &str, what: &'static str, map: DAffine3) -> Result<[[f32; 4]; 3], AccelError> {
