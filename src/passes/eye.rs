@@ -77,7 +77,9 @@ pub fn view(camera: &Camera, size: [u32; 2], everything: &Extent) -> View {
         }
     };
     let (_, far) = everything.along(forward);
-    let far = (far - camera.position.dot(forward)).max(high.max_element()) * (1.0 + NEAR) + f64::MIN_POSITIVE;
+    // With all behind the eye, the scene's own size: no length that does not grow with the scene.
+    let least = everything.bounds().1.max(f64::MIN_POSITIVE);
+    let far = (far - camera.position.dot(forward)).max(least) * (1.0 + NEAR);
     let near = if perspective { NEAR * far } else { 0.0 };
     View { origin: camera.position, right, up, forward, low: -high, high, near, far, perspective }
 }
