@@ -257,6 +257,19 @@ fn a_reference_of_another_renderer_is_taken_as_it_is() {
     assert_eq!(ran.json()["results"][0]["measures"]["flip"]["truth_noise"], Value::Null);
 }
 
+/// A truth too short to know its noise: the figures stand, their noise does not.
+#[test]
+fn a_reference_of_infinite_noise_is_compared_without_it() {
+    let folder = folder();
+    let image = Picture::of(1.1).write(&folder, "i.exr");
+    let reference = Picture { variance: Some(f32::INFINITY), ..Picture::of(1.0) }.write(&folder, "r.exr");
+    let ran = compare(&[&image, "--reference", &reference, "--format", "json"]);
+    assert_eq!(ran.code, Some(0));
+    assert!(ran.err.contains("its noise is infinite"), "{}", ran.err);
+    let relmse = &ran.json()["results"][0]["measures"]["relmse"];
+    assert!(relmse["value"].as_f64().is_some() && relmse["truth_noise"].is_null(), "{relmse}");
+}
+
 /// The warning names the value that changed; figures are given all the same.
 #[test]
 fn a_changed_scene_is_a_warning() {

@@ -137,6 +137,12 @@ impl Picture {
         Err(CompareError::Channels { file, layer: name, found, expected })
     }
 
+    /// How noisy a layer is, where that is known: a truth of a single chunk says infinitely.
+    fn variance(&self, layer: &str) -> Option<&Layer> {
+        let variance = self.layers.get(&format!("{layer}.variance"))?;
+        (!variance.data().contains(&f32::INFINITY)).then_some(variance)
+    }
+
     /// Whether each pixel may be judged: no part of it is masked.
     fn unmasked(&self) -> Result<Vec<bool>, CompareError> {
         match self.layers.get("mask") {
@@ -167,7 +173,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
     check_sizes(image, reference)?;
     let (x, r) = (image.layer(layer)?, reference.layer(layer)?);
     reference.check_channels(r, x.channels())?;
-    let variance = reference.layers.get(&format!("{layer}.variance"));
+    let variance = reference.variance(layer);
     variance.map_or(Ok(()), |v| reference.check_channels(v, x.channels()))?;
     image.check_camera()?;
     reference.check_camera()?;
@@ -193,7 +199,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
         masked: judged.len() - pixels,
         measures: measures(&pair, constants.e0, flip.measure),
         constants,
-        warnings: warnings(image, reference),
+        warnings: warnings(image, reference, layer),
         maps: Maps { size: image.size(), signed: signed(x, r), flip: flip.map, judged },
     })
 }
@@ -256,8 +262,12 @@ fn signed(image: &Layer, reference: &Layer) -> Vec<f64> {
 }
 
 /// What the files say of their scenes and paths, where it differs.
-fn warnings(image: &Picture, reference: &Picture) -> Vec<String> {
+fn warnings(image: &Picture, reference: &Picture, layer: &str) -> Vec<String> {
     let mut warnings = Vec::new();
+    if reference.layers.get(&format!("{layer}.variance")).is_some() && reference.variance(layer).is_none() {
+        warnings
+            .push(format!("{}: its noise is infinite somewhere, so that of the figures is not known", reference.file));
+    }
     let hash = |picture: &Picture| picture.about.get("scene.hash").cloned();
     if let (Some(ours), Some(theirs)) = (hash(image), hash(reference))
         && ours != theirs
