@@ -9,6 +9,7 @@ mod output;
 mod progress;
 mod render;
 mod signals;
+mod truth;
 
 use std::time::Instant;
 
@@ -30,6 +31,8 @@ const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 usage, 4 no such devic
 enum Command {
     /// Render a scene; write its layers, picture, timings and account of light
     Render(args::RenderArgs),
+    /// Trace a scene's reference in float64 on the CPU, with its variance
+    Truth(truth::TruthArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -46,6 +49,7 @@ impl Cli {
         signals::file_size_limit_is_an_error()?;
         match self.command {
             Command::Render(args) => render::run(&args, started),
+            Command::Truth(args) => truth::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Methods(args) => list::methods(&args),
