@@ -10,6 +10,7 @@ mod output;
 mod progress;
 mod render;
 mod signals;
+mod truth;
 
 use std::time::Instant;
 
@@ -34,6 +35,8 @@ enum Command {
     Render(args::RenderArgs),
     /// Judge pictures against a reference over the receiver region, by eight measures and their uncertainty
     Compare(compare::CompareArgs),
+    /// Trace a scene's reference in float64 on the CPU, with its variance
+    Truth(truth::TruthArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -51,6 +54,7 @@ impl Cli {
         match self.command {
             Command::Render(args) => render::run(&args, started),
             Command::Compare(args) => compare::run(&args),
+            Command::Truth(args) => truth::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Methods(args) => list::methods(&args),
