@@ -4,7 +4,7 @@ mod common;
 
 use common::{
     gpu,
-    picture::{Picture, Pixels, job_of, picture, pixels_of_map, rewritten, scene, written},
+    picture::{Picture, Pixels, job_of, picture, pixels_of_map, rewritten, scene, worst, written},
 };
 use glam::DVec3;
 use nephroid::{
@@ -85,7 +85,7 @@ impl Null<'_> {
     }
 
     /// Distance of a point of the region from the shadow's edge, m, to first order; negative in the shadow.
-    fn from_edge(&self, p: DVec3) -> f64 {
+    fn beyond_edge(&self, p: DVec3) -> f64 {
         let (u, v) = (self.region.u.normalize(), self.region.v.normalize());
         let h = 1e-5 * self.ball.1;
         let slope = |axis: DVec3| (self.offset(p + h * axis) - self.offset(p - h * axis)) / (2.0 * h);
@@ -109,7 +109,7 @@ impl Null<'_> {
         let (mut errors, mut ring, mut all) = (Vec::new(), [[0.0f64; 2]; SECTORS], [0.0f64; 2]);
         for (k, p) in pixels.centres().enumerate() {
             let (ours, exact) = (direct[k] + gain * caustic[k], self.direct(p));
-            let at = self.from_edge(p);
+            let at = self.beyond_edge(p);
             if at.abs() > band {
                 errors.push((ours / exact - 1.0).abs());
             } else {
@@ -139,7 +139,7 @@ impl Figures {
     fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         let mut hold = |what: String, error: f64, bound: f64| {
-            if !(error.abs() <= bound) {
+            if worst([error]) > bound {
                 faults.push(format!("{what}: {error} of {bound}"));
             }
         };

@@ -37,7 +37,8 @@ void main() {
     group_flux[slot] = vec4(0.0);
     if (all(lessThan(texel, push.size))) {
         Photon p = trace_photon(light_sample(texel));
-        if (p.status == PHOTON_VALID && !captured(p.hit, p.normal, push.light)) p.status = PHOTON_OUTSIDE_MAP;
+        vec3 normal = photon_normal(photon_flux_column(p).w); // as the method reads it
+        if (p.status == PHOTON_VALID && !captured(p.hit, normal, p.receiver, push.light)) p.status = PHOTON_OUTSIDE_MAP;
         group_status[slot] = p.status;
         group_bent[slot] = p.bent;
         group_flux[slot] = vec4(mean(p.emitted), mean(p.flux), mean(p.other), mean(p.absorbed));

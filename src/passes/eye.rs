@@ -31,7 +31,7 @@ pub static DEPTH: Whole = Whole {
     unit: "events",
     default: 6,
     range: 1..=16,
-    doc: "specular events of a path from the eye, in pixels that look at glass or mirrors",
+    doc: "specular events of a path from the eye, in pixels that look at glass or mirrors; branches below 1e-4 of it are left",
 };
 
 /// Exposure of the PNG.
@@ -77,7 +77,9 @@ pub fn view(camera: &Camera, size: [u32; 2], everything: &Extent) -> View {
         }
     };
     let (_, far) = everything.along(forward);
-    let far = (far - camera.position.dot(forward)).max(high.max_element()) * (1.0 + NEAR) + f64::MIN_POSITIVE;
+    // With all behind the eye, the scene's own size: no length that does not grow with the scene.
+    let least = everything.bounds().1.max(f64::MIN_POSITIVE);
+    let far = (far - camera.position.dot(forward)).max(least) * (1.0 + NEAR);
     let near = if perspective { NEAR * far } else { 0.0 };
     View { origin: camera.position, right, up, forward, low: -high, high, near, far, perspective }
 }

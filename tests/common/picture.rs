@@ -144,6 +144,11 @@ impl Pixels<'_> {
     }
 }
 
+/// The greatest size among errors; infinite if one is no number.
+pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
+    errors.into_iter().fold(0.0, |worst, e| if e.is_finite() { worst.max(e.abs()) } else { f64::INFINITY })
+}
+
 /// The flux (W) that a rectangle gets of light spread evenly round its centre, by the flux inside each circle.
 ///
 /// `half`: half edges, m; rings of `step` metres each give the share of their circle that lies in the rectangle.
