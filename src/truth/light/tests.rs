@@ -106,7 +106,9 @@ fn hard_cases_are_finite_and_the_same_twice() {
     let inside = BOX.replace("position = [0.0, 3.0, 0.0]", "position = [0.2, 0.9, 0.0]");
     let on_the_axis = BOX.replace("position = [0.0, 3.0, 0.0]", "position = [0.0, 0.0, 0.0]");
     let touching = BOX.replace("position = [0.0, 3.0, 0.0]", "position = [0.0, 1.0, 0.0]");
-    let coincident = BOX.replace("[objects.floor]", "[objects.twin]\nmaterial = \"glass\"\nvisible_to_camera = true\nsphere = { center = [0.0, 0.0, 0.0], radius = 1.0 }\n[objects.floor]");
+    let ball = "sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 }";
+    let twin = format!("[objects.twin]\nmaterial = \"glass\"\nvisible_to_camera = true\n{ball}\n[objects.floor]");
+    let coincident = BOX.replace("[objects.floor]", &twin);
     let mirrors = BOX
         .replace(
             "material = \"white\"\nquad = { center = [0.0, -4.0",
