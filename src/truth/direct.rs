@@ -1,4 +1,4 @@
-//! Direct light with shadows, the mask, and the scene's irradiance of reference E₀.
+//! Direct light with shadows, and the mask.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use super::{
     eye::Eye,
     light::sequence::{draw, stream},
-    sums::{BANDS, Sums},
-    trace::{Ray, Space, Surface, mask},
+    sums::Sums,
+    trace::{Space, Surface, mask},
 };
-use crate::scene::{LightKind, Region, Scene};
+use crate::scene::LightKind;
 
 /// What a seed's numbers are for: eye samples.
 const SAMPLES: u64 = 3;
@@ -17,13 +17,10 @@ const SAMPLES: u64 = 3;
 const PICTURES: u64 = 8;
 /// Each of them has this many samples a pixel along each axis, one anywhere in each cell.
 const SIDE: usize = 2;
-/// Samples of the region along each axis, for E₀.
-const REGION_SIDE: usize = 64;
 
 /// Irradiance (W/m² per band) of all lights at a surface seen along `d`; what is in `mask` casts shadows.
 fn irradiance(space: &Space, s: &Surface, d: DVec3, mask: u8) -> DVec3 {
-    let geometric = s.facing(d);
-    let shading = if geometric == s.ng { s.ns } else { -s.ns };
+    let normal = s.facing(d); // geometric: irradiance is flux over area
     let one = |kind: &LightKind| {
         let (towards, reach, facing) = match kind {
             LightKind::Directional { direction, irradiance } => (-*direction, f64::INFINITY, DVec3::from(*irradiance)),
@@ -32,12 +29,8 @@ fn irradiance(space: &Space, s: &Surface, d: DVec3, mask: u8) -> DVec3 {
                 (way.normalize_or_zero(), way.length(), DVec3::from(*intensity) / way.length_squared())
             }
         };
-        let cosine = shading.dot(towards);
-        if cosine > 0.0 && geometric.dot(towards) > 0.0 && !space.blocked(&s.ray(towards), reach, mask) {
-            facing * cosine
-        } else {
-            DVec3::ZERO
-        }
+        let cosine = normal.dot(towards);
+        if cosine > 0.0 && !space.blocked(&s.ray(towards), reach, mask) { facing * cosine } else { DVec3::ZERO }
     };
     space.scene.lights.iter().map(|l| one(&l.kind)).sum()
 }
@@ -78,35 +71,6 @@ fn sample(space: &Space, eye: &Eye, seed: u64, pixel: usize) -> ([DVec3; PICTURE
         }
     }
     (pictures, masked)
-}
-
-/// E₀, W/m²: the mean over the region, and over the bands, of all lights' irradiance without the specular objects; if
-/// that is 0, the sum of what each light brings to a plane facing it at the region's centre.
-pub fn reference_irradiance(space: &Space) -> f64 {
-    let region = &space.scene.region;
-    let n = REGION_SIDE;
-    let mid = |i: usize| 2.0 * (i as f64 + 0.5) / n as f64 - 1.0;
-    let at = |k: usize| region.center + mid(k % n) * region.u + mid(k / n) * region.v;
-    let sum: DVec3 = (0..n * n).map(|k| on_region(space, region, at(k))).sum();
-    let mean = sum.element_sum() / (n * n * BANDS) as f64;
-    if mean > 0.0 { mean } else { facing(space.scene, region.center) }
-}
-
-fn on_region(space: &Space, region: &Region, p: DVec3) -> DVec3 {
-    // Found by a ray from just above, so that it starts on its own surface from there on.
-    let normal = region.normal();
-    let above = Ray { o: p + normal * region.u.length().min(region.v.length()) * 1e-6, d: -normal, left: None };
-    let found = space.nearest(&above, mask::DIFFUSE).filter(|s| s.object == region.receiver);
-    found.map_or(DVec3::ZERO, |s| irradiance(space, &s, -normal, mask::DIFFUSE))
-}
-
-fn facing(scene: &Scene, p: DVec3) -> f64 {
-    let mean = |bands: &[f64; 3]| bands.iter().sum::<f64>() / BANDS as f64;
-    let one = |kind: &LightKind| match kind {
-        LightKind::Directional { irradiance, .. } => mean(irradiance),
-        LightKind::Point { position, intensity } => mean(intensity) / position.distance_squared(p),
-    };
-    scene.lights.iter().map(|l| one(&l.kind)).sum()
 }
 
 /// The pixels whose middle looks at the region, and that see nothing specular.

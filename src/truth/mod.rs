@@ -16,5 +16,4 @@ mod run;
 mod sums;
 pub mod trace;
 
-pub use direct::reference_irradiance;
 pub use run::{Goal, Run, Standing, Task, VERSION};

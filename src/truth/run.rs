@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 use super::{
-    direct::{Direct, direct, judged, reference_irradiance},
+    direct::{Direct, direct, judged},
     eye::Eye,
     light::Photons,
     sums::{BANDS, Sums},
@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     image::{ImageError, Layers, Provenance},
+    metrics::bare_irradiance,
     scene::{Camera, PathClass, Scene},
     store::Key,
 };
@@ -94,7 +95,7 @@ impl<'a> Run<'a> {
         let judged = judged(space, &eye, &direct.mask);
         let photons = Photons::new(space, task.paths, task.seed, task.per_chunk());
         let caustic = Sums::new(eye.pixels());
-        Self { task, space, photons, caustic, judged, e0: reference_irradiance(space), direct, eye }
+        Self { task, space, photons, caustic, judged, e0: bare_irradiance(space.scene), direct, eye }
     }
 
     /// Adds chunks, a group of `width` at a time on all cores, until the goal is met or `watch` breaks off.
