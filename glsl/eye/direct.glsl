@@ -5,10 +5,10 @@
 #include "shared/interface.glsl"
 #include "shared/transport.glsl"
 
-// Irradiance (W/m^2) of all lights at s, seen along d.
+// Irradiance (W/m^2) of all lights at s, seen along d: flux over area, so the cosine is the geometric normal's.
+// (Interpolated normals bend rays; to shade with them would make direct light and caustic disagree.)
 vec3 direct_irradiance(Surface s, vec3 d) {
     vec3 geometric = facing_normal(s, d);
-    vec3 shading = dot(geometric, s.ng) < 0.0 ? -s.ns : s.ns;
     vec3 sum = vec3(0.0);
     for (int k = 0; k < LIGHT_COUNT; k++) {
         Light light = scene_lights.data[k];
@@ -22,8 +22,8 @@ vec3 direct_irradiance(Surface s, vec3 d) {
             if (!(reach > 0.0)) continue; // the light is at the point: it has no direction
             facing = light.power / max(reach * reach, 1e-30) * medium_transmits(light.medium, reach);
         }
-        float cosine = dot(shading, towards);
-        if (!(cosine > 0.0) || !(dot(geometric, towards) > 0.0)) continue;
+        float cosine = dot(geometric, towards);
+        if (!(cosine > 0.0)) continue;
         vec3 o = leave(s, towards);
         if (light.kind == LIGHT_POINT) reach = max(dot(light.vector - o, towards), 0.0);
         if (occluded(o, towards, reach, MASK_ALL)) continue;

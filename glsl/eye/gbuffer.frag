@@ -30,6 +30,7 @@ void main() {
         depth = dot(o + t * d - eye.origin, eye.forward);
     }
 #endif
+    if (depth < eye.near) discard; // an orthographic eye has no apex to clip what lies behind it
     gl_FragDepth = clamp((depth - eye.near) / (eye.far - eye.near), 0.0, 1.0);
     seen = uvec4(shape.x + 1u, shape.y, floatBitsToUint(shape_uv));
 }

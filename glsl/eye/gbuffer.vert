@@ -49,4 +49,6 @@ void main() {
     vec3 p = map_point(at.to_world, local);
     eye_depth = dot(p - frame.data.eye.origin, frame.data.eye.forward);
     gl_Position = view_clip(frame.data.eye, p);
+    // Depth is the fragment's. A box must not be cut where its corners reach beyond what it stands for.
+    gl_Position.z = 0.5 * gl_Position.w;
 }

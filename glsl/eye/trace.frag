@@ -49,12 +49,14 @@ void split(Surface s, vec3 d, vec3 share, uint medium, int events) {
         follow(s, reflected, share * m.colour, medium, events + 1);
         return;
     }
+    // One reflectance for both branches, so that they share out just what came.
     if (bend_refract(s, d, from, to, refracted, reflectance, bent)) {
         float scale = from / to;
         uint inside = entering ? s.material : MEDIUM_AIR;
         follow(s, refracted, share * (1.0 - reflectance) * scale * scale, inside, events + 1);
     }
-    bend_reflect(s, d, from, to, reflected, reflectance, bent);
+    float of_reflection;
+    bend_reflect(s, d, from, to, reflected, of_reflection, bent);
     follow(s, reflected, share * reflectance, medium, events + 1);
 }
 

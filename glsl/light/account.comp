@@ -38,7 +38,7 @@ void main() {
     if (all(lessThan(texel, push.size))) {
         Photon p = trace_photon(light_sample(texel));
         vec3 normal = photon_normal(photon_flux_column(p).w); // as the method reads it
-        if (p.status == PHOTON_VALID && !captured(p.hit, normal, push.light)) p.status = PHOTON_OUTSIDE_MAP;
+        if (p.status == PHOTON_VALID && !captured(p.hit, normal, p.receiver, push.light)) p.status = PHOTON_OUTSIDE_MAP;
         group_status[slot] = p.status;
         group_bent[slot] = p.bent;
         group_flux[slot] = vec4(mean(p.emitted), mean(p.flux), mean(p.other), mean(p.absorbed));

@@ -31,7 +31,8 @@ void main() {
     if (hit.w == 0.0) return;
     vec4 flux = texelFetch(photons_flux, texel, 0);
     vec2 xy01;
-    if (!map_captures(maps_views.data[push.layer], hit.xyz, photon_normal(flux.w), xy01)) return;
+    uint receiver = uint(hit.w) - 1u;
+    if (!map_captures(maps_views.data[push.layer], hit.xyz, photon_normal(flux.w), receiver, xy01)) return;
     vec2 p = vec2(splat_snap(xy01.x * float(push.side)), splat_snap(xy01.y * float(push.side)));
     p = min(p, vec2(float(push.side) - 1.0 / SPLAT_GRID)); // the centre stays inside: points are clipped by it
     float norm = splat_norm(p.x, push.diameter, push.side) * splat_norm(p.y, push.diameter, push.side);

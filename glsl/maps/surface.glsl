@@ -24,7 +24,9 @@ vec3 surface_irradiance(vec3 p, vec3 n, uint receiver, vec2 uv) {
     ivec2 size = textureSize(maps_map, 0).xy;
     vec3 sum = vec3(0.0);
     for (int layer = 0; layer < maps_views.data.length(); layer++) {
-        View v = maps_views.data[layer];
+        MapView map = maps_views.data[layer];
+        if (map.receiver != ANY && map.receiver != receiver) continue;
+        View v = map.view;
         vec2 xy01;
         if (!map_project(v, p, n, xy01)) continue;
         // What lands outside is counted as outside, and not in the map.

@@ -4,12 +4,15 @@
 
 #include "shared/view.glsl"
 
-layout(set = 0, binding = 13, scalar) readonly buffer MapViews { View data[]; } maps_views;
+const uint ANY = 0xffffffffu;
 
-// The layer that light `light` deposits in: its own, or the one that all share.
-uint map_layer(uint light) {
-    return min(light, uint(maps_views.data.length()) - 1u);
-}
+struct MapView {
+    View view;
+    uint receiver; // the object whose light the layer holds, or ANY
+    uint light;    // the light whose photons it takes, or ANY
+};
+
+layout(set = 0, binding = 13, scalar) readonly buffer MapViews { MapView data[]; } maps_views;
 
 // True if the surface at p with geometric normal n faces the view; xy01 where it is seen.
 bool map_project(View v, vec3 p, vec3 n, out vec2 xy01) {
@@ -18,9 +21,11 @@ bool map_project(View v, vec3 p, vec3 n, out vec2 xy01) {
     return dot(n, towards) < 0.0;
 }
 
-// A photon is the map's if the texel it lands on is.
-bool map_captures(View v, vec3 p, vec3 n, out vec2 xy01) {
-    return map_project(v, p, n, xy01) && all(greaterThanEqual(xy01, vec2(0.0))) && all(lessThan(xy01, vec2(1.0)));
+// A photon is the map's if it lies on the map's receiver and the texel it lands on is the map's.
+bool map_captures(MapView map, vec3 p, vec3 n, uint receiver, out vec2 xy01) {
+    xy01 = vec2(0.0);
+    if (map.receiver != ANY && map.receiver != receiver) return false;
+    return map_project(map.view, p, n, xy01) && all(greaterThanEqual(xy01, vec2(0.0))) && all(lessThan(xy01, vec2(1.0)));
 }
 
 #endif

@@ -135,14 +135,14 @@ const SCENE: &str = "scene.";
 /// Larger than the images of any device, small enough to count bytes.
 const LARGEST: u32 = 65536;
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |side: &str| side.parse().ok().filter(|n| (1..=LARGEST).contains(n));
     text.split_once('x')
         .and_then(|(width, height)| Some([side(width)?, side(height)?]))
         .ok_or_else(|| format!("expected WIDTHxHEIGHT such as 640x480, each from 1 to {LARGEST}"))
 }
 
-fn parse_set(text: &str) -> Result<(String, String), String> {
+pub fn parse_set(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
         _ => Err("expected KEY=VALUE, such as light.side=1024 or scene.exposure=1".to_owned()),

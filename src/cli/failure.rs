@@ -5,7 +5,7 @@ use std::{fmt, io, process::ExitCode};
 use crate::{
     gpu::GpuError,
     image::ImageError,
-    lab::LabError,
+    lab::{CompareError, LabError},
     passes::PlanError,
     renderer::RenderError,
     scene::{Place, SceneError},
@@ -16,6 +16,8 @@ use crate::{
 const FAILED: u8 = 1;
 /// What was typed cannot be done: change the command.
 const USAGE: u8 = 2;
+/// A picture is worse than was asked for.
+const THRESHOLD: u8 = 3;
 const NO_DEVICE: u8 = 4;
 /// As a shell says it of a program that Ctrl-C ended.
 const INTERRUPTED: u8 = 130;
@@ -36,6 +38,11 @@ impl Failure {
     /// What was typed is right, and it failed.
     pub(super) fn failed(error: impl Into<anyhow::Error>) -> Self {
         Self { code: FAILED, error: error.into() }
+    }
+
+    /// It was done, and a figure exceeds what was asked for.
+    pub(super) fn threshold(error: impl Into<anyhow::Error>) -> Self {
+        Self { code: THRESHOLD, error: error.into() }
     }
 
     /// The process's exit code.
@@ -92,6 +99,12 @@ impl From<LabError> for Failure {
             LabError::Interrupted => Self { code: INTERRUPTED, error: error.into() },
             other => Self::failed(other),
         }
+    }
+}
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        Self::failed(error)
     }
 }
 

@@ -1,14 +1,16 @@
 //! Floor 6: the command line. Data on stdout, progress and logs on stderr.
 //!
-//! Exit codes: 0 done, 1 failed, 2 usage, 4 no such device, 130 interrupted.
+//! Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device, 130 interrupted.
 
 mod args;
+mod compare;
 mod failure;
 mod list;
 mod output;
 mod progress;
 mod render;
 mod signals;
+mod truth;
 
 use std::time::Instant;
 
@@ -24,12 +26,17 @@ pub struct Cli {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 usage, 4 no such device, 130 interrupted";
+const EXIT_CODES: &str =
+    "Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device, 130 interrupted";
 
 #[derive(Subcommand)]
 enum Command {
     /// Render a scene; write its layers, picture, timings and account of light
     Render(args::RenderArgs),
+    /// Judge pictures against a reference over the receiver region, by eight measures and their uncertainty
+    Compare(compare::CompareArgs),
+    /// Trace a scene's reference in float64 on the CPU, with its variance
+    Truth(truth::TruthArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -46,6 +53,8 @@ impl Cli {
         signals::file_size_limit_is_an_error()?;
         match self.command {
             Command::Render(args) => render::run(&args, started),
+            Command::Compare(args) => compare::run(&args),
+            Command::Truth(args) => truth::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Methods(args) => list::methods(&args),

@@ -77,6 +77,8 @@ pub struct DeviceInfo {
     pub memory_bytes: u64,
     pub(super) physical: vk::PhysicalDevice,
     pub(super) queue_family: u32,
+    /// Bits of a timestamp that mean something.
+    pub(super) timestamp_bits: u32,
 }
 
 impl DeviceInfo {
@@ -91,6 +93,11 @@ impl DeviceInfo {
         format!("{} ({}{warning})", self.name, self.kind)
     }
 }
+
+/// Splats are placed on a grid of 1/256 texel (`glsl/shared/splat.glsl`).
+const SUB_TEXEL_BITS: u32 = 8;
+/// What the largest pass binds, and some more.
+const STORAGE_BUFFERS: u32 = 12;
 
 /// Every device the loader finds.
 pub fn list_devices() -> Result<Vec<DeviceInfo>, GpuError> {
@@ -177,6 +184,13 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
     require(has_extension(ash::khr::push_descriptor::NAME), "VK_KHR_push_descriptor");
     require(queue_family.is_some(), "a graphics and compute queue with timestamps");
 
+    let limits = &properties.limits;
+    require(limits.sub_pixel_precision_bits >= SUB_TEXEL_BITS, "points placed to 1/256 pixel (subPixelPrecisionBits)");
+    require(
+        limits.max_per_stage_descriptor_storage_buffers >= STORAGE_BUFFERS,
+        "12 storage buffers a stage (maxPerStageDescriptorStorageBuffers)",
+    );
+
     let kind = match properties.device_type {
         vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
         vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
@@ -206,6 +220,7 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
         memory_bytes: local.map(|h| h.size).max().unwrap_or(0),
         physical,
         queue_family: queue_family.unwrap_or(0) as u32,
+        timestamp_bits: queue_family.map_or(0, |f| families[f].timestamp_valid_bits),
     })
 }
 

@@ -251,6 +251,16 @@ impl Shared {
         self.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
+    /// Pipeline stages that barriers may name on this device.
+    pub fn known_stages(&self) -> vk::PipelineStageFlags2 {
+        let optional = [
+            (Feature::GeometryShader, vk::PipelineStageFlags2::GEOMETRY_SHADER),
+            (Feature::TransformFeedback, vk::PipelineStageFlags2::TRANSFORM_FEEDBACK_EXT),
+        ];
+        let lacking = optional.into_iter().filter(|(feature, _)| !self.info.features.contains(feature));
+        lacking.fold(!vk::PipelineStageFlags2::NONE, |known, (_, stage)| known & !stage)
+    }
+
     /// Names an object for the validation layers and for captures.
     pub fn name<H: vk::Handle>(&self, handle: H, name: &str) {
         if let (Some(labels), Ok(name)) = (&self.labels, CString::new(name)) {

@@ -147,11 +147,19 @@ impl Program {
     pub(super) fn barriers(
         &self,
         commands: vk::CommandBuffer,
-        buffers: Vec<vk::BufferMemoryBarrier2<'_>>,
-        images: Vec<vk::ImageMemoryBarrier2<'_>>,
+        mut buffers: Vec<vk::BufferMemoryBarrier2<'_>>,
+        mut images: Vec<vk::ImageMemoryBarrier2<'_>>,
     ) {
         if buffers.is_empty() && images.is_empty() {
             return;
+        }
+        // A stage that the device lacks may not be named, even beside others.
+        let known = self.shared.known_stages();
+        for b in &mut buffers {
+            (b.src_stage_mask, b.dst_stage_mask) = (b.src_stage_mask & known, b.dst_stage_mask & known);
+        }
+        for b in &mut images {
+            (b.src_stage_mask, b.dst_stage_mask) = (b.src_stage_mask & known, b.dst_stage_mask & known);
         }
         let info = vk::DependencyInfo::default().buffer_memory_barriers(&buffers).image_memory_barriers(&images);
         // SAFETY: recording, outside rendering; handles are live.

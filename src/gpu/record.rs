@@ -66,10 +66,9 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
     unsafe {
         label(program, commands, Some(&pass.name));
         resource_barriers(program, pass);
+        settle(device, commands);
         timer.stamp(commands, 2 * slot);
-        if program.shared.info.is_software() {
-            settle(device, commands);
-        }
+        settle(device, commands);
         if counts {
             timer.begin_counting(commands, slot);
         }
@@ -87,8 +86,9 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
     }
 }
 
-/// Lets the timestamp before a pass take effect before the pass: a software rasteriser bins timestamps with its draws,
-/// while its dispatches run at once, so that a dispatch would be charged to the pass after it.
+/// Keeps passes apart, so that each is charged for its own work alone: a timestamp orders nothing by itself. Passes
+/// that share nothing would overlap on a GPU; a software rasteriser bins timestamps with its draws while its dispatches
+/// run at once, and would charge a dispatch to the pass after it.
 ///
 /// # Safety
 /// The command buffer is recording, outside rendering.

@@ -95,6 +95,8 @@ pub(super) struct Timer {
     statistics: Option<Pool>,
     passes: usize,
     period_ms: f64,
+    /// The bits of a timestamp that count; it wraps around beyond them.
+    mask: u64,
 }
 
 impl Timer {
@@ -112,6 +114,7 @@ impl Timer {
             statistics: make(has(Feature::Statistics), vk::QueryType::PIPELINE_STATISTICS, wanted)?,
             passes,
             period_ms: f64::from(shared.info.timestamp_period) * 1e-6,
+            mask: u64::MAX.checked_shr(64 - shared.info.timestamp_bits.clamp(1, 64)).unwrap_or(u64::MAX),
         })
     }
 
@@ -157,7 +160,7 @@ impl Timer {
     /// Milliseconds of each pass, and the span of all.
     pub fn times(&self) -> Result<(Vec<f64>, f64), GpuError> {
         let stamps = self.stamps.read::<1>(0, 2 * self.passes)?;
-        let ms = |from: u64, to: u64| to.saturating_sub(from) as f64 * self.period_ms;
+        let ms = |from: u64, to: u64| (to.wrapping_sub(from) & self.mask) as f64 * self.period_ms;
         let passes = stamps.chunks_exact(2).map(|pair| ms(pair[0][0], pair[1][0])).collect();
         let span = match (stamps.first(), stamps.last()) {
             (Some(first), Some(last)) => ms(first[0], last[0]),

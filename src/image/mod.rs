@@ -2,6 +2,7 @@
 //!
 //! * [`Layers`]: named float32 layers of one size; [`Layers::to_exr`], [`Layers::from_exr`].
 //! * [`to_png`]: one layer, tone-mapped by [`tone_map`].
+//! * [`rgb_to_png`]: colours as they are.
 //! * [`to_npy`]: an array of numbers.
 //!
 //! Encoders are functions of their input alone: the same input gives the same bytes, whatever the thread count, with no
@@ -17,7 +18,7 @@ mod tone;
 pub use error::ImageError;
 pub use layers::{Layer, Layers};
 pub use npy::{NpyElement, to_npy};
-pub use png_file::to_png;
+pub use png_file::{rgb_to_png, to_png};
 pub use tone::tone_map;
 
 /// What a file says about how it was made: name → text, in the names' order.

@@ -20,7 +20,22 @@ pub fn to_png(image: &Layers, layer: &str, ev: f64, provenance: &Provenance) -> 
     if width * height == 0 {
         return Err(ImageError::Empty { width, height, layers: image.iter().len() });
     }
-    let side = |length: usize| u32::try_from(length).map_err(|_| ImageError::layer(layer, "too large for a PNG"));
+    let pixels: Vec<[u8; 3]> = found.pixels().map(|pixel| tone_map(rgb(pixel), ev)).collect();
+    rgb_to_png([width, height], &pixels, provenance)
+}
+
+/// Colours (sRGB, rows from the top) as a PNG file, `size` pixels across and down; the same bytes for the same input.
+///
+/// # Errors
+/// [`ImageError::Format`] if the colours do not fill the size, or it is no size of a PNG; [`ImageError::Provenance`] as
+/// [`to_png`].
+pub fn rgb_to_png(size: [usize; 2], colours: &[[u8; 3]], provenance: &Provenance) -> Result<Vec<u8>, ImageError> {
+    let refused = |problem: String| ImageError::Format { format: "PNG", problem };
+    let [width, height] = size;
+    if width.checked_mul(height) != Some(colours.len()) {
+        return Err(refused(format!("{} colours do not fill {width} × {height}", colours.len())));
+    }
+    let side = |length: usize| u32::try_from(length).map_err(|_| refused(format!("{length} pixels along a side")));
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, side(width)?, side(height)?);
     encoder.set_color(ColorType::Rgb);
@@ -30,9 +45,8 @@ pub fn to_png(image: &Layers, layer: &str, ev: f64, provenance: &Provenance) -> 
         check_keyword(name)?;
         encoder.add_itxt_chunk(name.clone(), text.clone()).map_err(format_error)?;
     }
-    let pixels: Vec<u8> = found.pixels().flat_map(|pixel| tone_map(rgb(pixel), ev)).collect();
     let mut writer = encoder.write_header().map_err(format_error)?;
-    writer.write_image_data(&pixels).map_err(format_error)?;
+    writer.write_image_data(colours.as_flattened()).map_err(format_error)?;
     writer.finish().map_err(format_error)?;
     Ok(bytes)
 }

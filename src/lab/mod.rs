@@ -2,6 +2,10 @@
 //! never time anything.
 
 mod catalogue;
+mod compare;
+mod compare_maps;
+mod compare_report;
+mod compare_scene;
 mod devices;
 mod experiment;
 mod files;
@@ -12,6 +16,9 @@ mod report;
 mod table;
 
 pub use catalogue::{MethodsReport, ScenesReport};
+pub use compare::{CompareError, Comparison, Constants, MEASURES, Picture, compare};
+pub use compare_maps::error_maps;
+pub use compare_report::{CompareReport, Limit};
 pub use devices::{DeviceRow, DevicesReport};
 pub use experiment::{Experiment, LabError, Measured, Step};
 pub use files::{dump_file, write_dump, write_outputs};

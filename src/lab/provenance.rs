@@ -8,6 +8,7 @@ use super::devices::DeviceRow;
 use crate::{
     gpu::DeviceInfo,
     image,
+    metrics::bare_irradiance,
     passes::eye,
     renderer::{self, Frame, Job},
     scene::Scene,
@@ -28,6 +29,8 @@ pub struct Provenance {
     camera: String,
     size: [u32; 2],
     settings: Map<String, Value>,
+    /// W/m²: the yardstick of the scene's errors.
+    e0: f64,
     time_s: f64,
     seed: u32,
     arguments: Vec<String>,
@@ -79,6 +82,7 @@ impl Provenance {
             camera: job.camera.clone(),
             size: job.size,
             settings: in_force(&job.settings, &job.scene),
+            e0: bare_irradiance(&job.scene),
             time_s: frame.time,
             seed: frame.seed,
             arguments,

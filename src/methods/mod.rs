@@ -51,8 +51,6 @@ pub struct Job<'a> {
     pub everything: &'a Extent,
     /// The emission views, in the order in which they come.
     pub emissions: &'a [Emission],
-    /// How many lights the scene has.
-    pub lights: usize,
     /// The photon buffer, filled anew for each view.
     pub photons: &'a Photons,
 }

@@ -31,7 +31,7 @@ pub static DEPTH: Whole = Whole {
     unit: "events",
     default: 6,
     range: 1..=16,
-    doc: "specular events of a path from the eye, in pixels that look at glass or mirrors",
+    doc: "specular events of a path from the eye, in pixels that look at glass or mirrors; branches below 1e-4 of it are left",
 };
 
 /// Exposure of the PNG.

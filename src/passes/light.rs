@@ -25,7 +25,7 @@ pub static VIEW: Choice = Choice {
     key: "light.view",
     default: "fitted",
     words: &["fitted", "shared"],
-    doc: "fitted: to the specular objects; shared: one view of the whole scene for photons and map, as in the papers",
+    doc: "fitted: to the specular objects; shared: one view of objects and receiver for photons and map, as in the papers",
 };
 
 /// The tracer.

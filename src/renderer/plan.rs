@@ -131,7 +131,6 @@ fn photon_passes(
         beyond: extents::beyond(scene, receiver),
         everything,
         emissions: &emissions,
-        lights: scene.lights.len(),
         photons: &photons,
     };
     let mut planned = method.plan(&mut work)?;

@@ -1,3 +1,19 @@
-//! The float64 reference. It shares no code with the GPU path: only scenes, meshes and optics of the lowest floor.
+//! The float64 reference: photons traced exactly on the CPU, and closed forms.
+//!
+//! It shares no code with the GPU path: only scenes, meshes and optics of the lowest floor.
+//!
+//! * [`trace`]: rays and surfaces. [`light`]: photons from the lights to the first diffuse surface, by path class.
+//! * [`Run`]: their sum in the pixels of a camera with its variance; direct light and the mask beside it.
+//! * [`closed`]: what is known without photons.
+//!
+//! Pixels that look at or through specular objects see no caustic here; the mask names them.
 
 pub mod closed;
+mod direct;
+mod eye;
+pub mod light;
+mod run;
+mod sums;
+pub mod trace;
+
+pub use run::{Goal, Run, Standing, Task, VERSION};

@@ -5,6 +5,7 @@
 mod common;
 mod lights;
 mod nothing;
+mod receivers;
 mod shapes;
 mod sizes;
 

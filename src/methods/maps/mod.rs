@@ -10,10 +10,10 @@ use crate::{
     passes::{
         PlanError,
         eye::SurfaceProvider,
-        light::{self, Column},
+        light::{self, Column, Emission},
     },
     settings::{Choice, Setting, Whole},
-    view::View,
+    view::{View, ViewData},
 };
 
 static SIDE: Whole = Whole {
@@ -82,32 +82,45 @@ impl Method for Maps {
         let diameter = job.settings.whole(&SPLAT_SIZE);
         let views = receiving_views(job, side, diameter);
         let layers = views.len() as u32;
-        let data: Vec<_> = views.iter().map(View::data).collect();
         Ok(Box::new(PlannedMaps {
             side,
             diameter,
-            layers,
+            lights: views.iter().map(|v| v.light).collect(),
             map: job.plan.image_array("maps/map", [side, side], layers, Format::Rgba32f, Lifetime::Frame),
-            views: job.plan.upload("maps/views", &data),
+            views: job.plan.upload("maps/views", &views),
             drawn: vec![false; views.len()],
         }))
     }
 }
 
-/// Views that receive: one over the receiver's rectangle, which all lights share; in `shared` mode each light's own.
+/// Any receiver, or any light (`ANY` of `glsl/maps/views.glsl`).
+const ANY: u32 = u32::MAX;
+
+/// A layer of the map as the shaders read it (`MapView` of `glsl/maps/views.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[allow(missing_docs)] // the members are those of the shader
+pub struct MapView {
+    pub view: ViewData,
+    pub receiver: u32,
+    pub light: u32,
+}
+
+/// Views that receive: one over the receiver's rectangle, which all lights share and which holds that receiver's light
+/// alone; in `shared` mode each light's own view, which holds whatever it sees, as in the paper.
 ///
 /// A margin of half a splat and a texel keeps every splat whole that reaches into the rectangle. Where the receiver
 /// ends before, so does the map, and splats cut there are normalised: no light leaks over the receiver's edge.
-fn receiving_views(job: &Job<'_>, side: u32, diameter: u32) -> Vec<View> {
+fn receiving_views(job: &Job<'_>, side: u32, diameter: u32) -> Vec<MapView> {
     if job.settings.choice(&light::VIEW) == "shared" {
-        // A light that emits nothing keeps a layer, so that layers go by lights; any view serves it.
-        let of_light = |l: usize| job.emissions.iter().find(|e| e.light == l).or(job.emissions.first());
-        return (0..job.lights).filter_map(of_light).map(|e| e.view).collect();
+        let of = |e: &Emission| MapView { view: e.view.data(), receiver: ANY, light: e.light as u32 };
+        return job.emissions.iter().map(of).collect();
     }
     let r = job.receiver;
     let full = (0.5 * f64::from(diameter) + 1.0).min(0.25 * f64::from(side));
     let half = DVec2::new(r.u.length(), r.v.length());
-    vec![View::of_rectangle(r.center, r.u, r.v, margins(half, job.beyond, side, full), job.everything)]
+    let view = View::of_rectangle(r.center, r.u, r.v, margins(half, job.beyond, side, full), job.everything);
+    vec![MapView { view: view.data(), receiver: r.receiver as u32, light: ANY }]
 }
 
 /// Margins (m) of `full` texels on each side of a rectangle, less where the receiver ends before; with them the
@@ -126,7 +139,8 @@ fn margins(half: DVec2, beyond: [DVec2; 2], side: u32, full: f64) -> [DVec2; 2] 
 struct PlannedMaps {
     side: u32,
     diameter: u32,
-    layers: u32,
+    /// Of each layer.
+    lights: Vec<u32>,
     map: ImageId,
     views: BufferId,
     drawn: Vec<bool>,
@@ -154,7 +168,8 @@ impl Planned for PlannedMaps {
 
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
         let n = job.photons.side;
-        let layer = (job.emissions[view].light as u32).min(self.layers - 1);
+        let light = job.emissions[view].light as u32;
+        let layer = self.lights.iter().position(|&l| l == ANY || l == light).unwrap_or(0) as u32;
         let first = !std::mem::replace(&mut self.drawn[layer as usize], true);
         let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, layer };
         job.plan

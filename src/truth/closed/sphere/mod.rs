@@ -51,7 +51,7 @@ pub enum Illumination {
 /// The arrangement has no such closed form; the message names the value and its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("no closed form: {0}")]
-pub struct OutsideDomain(&'static str);
+pub struct OutsideDomain(pub(super) &'static str);
 
 /// A range of θ over which the landing distance ρ is monotone and finite inside.
 #[derive(Clone, Copy, Debug)]

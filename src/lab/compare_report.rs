@@ -1,0 +1,178 @@
+//! `nephroid.compare/1`: how wrong pictures are, and how well that is known.
+
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
+
+use super::{
+    Cell, Report, Table,
+    compare::{Comparison, Constants, MEASURES},
+};
+use crate::metrics::Measure;
+
+/// The result of `nephroid compare`.
+#[derive(Debug, Serialize)]
+pub struct CompareReport {
+    schema: &'static str,
+    reference: String,
+    results: Vec<Row>,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Row {
+    image: String,
+    layer: String,
+    pixels: usize,
+    masked: usize,
+    constants: Constants,
+    #[serde(serialize_with = "by_name")]
+    measures: [Measure; 8],
+}
+
+/// A limit that a measure may not exceed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// One of [`MEASURES`].
+    pub measure: &'static str,
+    /// The largest value allowed; for the ratio of energies, the largest distance from one.
+    pub most: f64,
+}
+
+impl CompareReport {
+    /// Of pictures compared with one reference.
+    pub fn new(reference: &str, comparisons: &[Comparison]) -> Self {
+        let row = |c: &Comparison| Row {
+            image: c.image.clone(),
+            layer: c.layer.clone(),
+            pixels: c.pixels,
+            masked: c.masked,
+            constants: c.constants,
+            measures: c.measures,
+        };
+        Self {
+            schema: "nephroid.compare/1",
+            reference: reference.to_owned(),
+            results: comparisons.iter().map(row).collect(),
+            warnings: comparisons.iter().flat_map(|c| c.warnings.clone()).collect(),
+        }
+    }
+
+    /// What differs between the pictures and the reference that should not.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Every limit exceeded, as a sentence. What is not finite exceeds any.
+    pub fn exceeded(&self, limits: &[Limit]) -> Vec<String> {
+        let mut exceeded = Vec::new();
+        for (row, limit) in self.results.iter().flat_map(|row| limits.iter().map(move |limit| (row, limit))) {
+            let Some(at) = MEASURES.iter().position(|name| *name == limit.measure) else { continue };
+            let measure = row.measures[at];
+            if (measure.value - measure.perfect).abs() <= limit.most {
+                continue;
+            }
+            let (name, value, most) = (limit.measure, figure(measure.value), limit.most);
+            let from = if measure.perfect == 0.0 { "above" } else { "further from 1 than" };
+            exceeded.push(format!("{name} of {} is {value}, {from} {most}", row.image));
+        }
+        exceeded
+    }
+}
+
+fn by_name<S: Serializer>(measures: &[Measure; 8], serializer: S) -> Result<S::Ok, S::Error> {
+    let by_name = MEASURES.iter().zip(measures).map(|(name, measure)| (name.to_string(), json(measure)));
+    by_name.collect::<Map<_, _>>().serialize(serializer)
+}
+
+fn json(measure: &Measure) -> Value {
+    let bound = |bound: Option<f64>| bound.map_or(Value::Null, number);
+    serde_json::json!({
+        "value": number(measure.value),
+        "low": bound(measure.low),
+        "high": bound(measure.high),
+        "truth_noise": bound(measure.truth_noise),
+        "below_noise": measure.is_noise(),
+    })
+}
+
+/// JSON has no infinity, and its null would pass for small: the word passes for nothing.
+fn number(value: f64) -> Value {
+    if value.is_finite() { value.into() } else { "infinity".into() }
+}
+
+/// Five digits, at any scale.
+fn figure(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        value if !value.is_finite() => "infinite".to_owned(),
+        value if (1e-3..1e4).contains(&value.abs()) => format!("{value:.5}"),
+        value => format!("{value:.4e}"),
+    }
+}
+
+impl Report for CompareReport {
+    fn heading(&self) -> Vec<String> {
+        vec![format!("against {}", self.reference)]
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let shown = |measure: &Measure| {
+            let bound = |bound: Option<f64>| bound.map_or(Cell::None, |bound| Cell::text(figure(bound)));
+            let value = if measure.is_noise() { "lost in noise".to_owned() } else { figure(measure.value) };
+            vec![Cell::text(value), bound(measure.low), bound(measure.high), bound(measure.truth_noise)]
+        };
+        vec![self.table(shown)]
+    }
+
+    fn csv_tables(&self) -> Vec<Table> {
+        let plain = |measure: &Measure| {
+            let bound = |bound: Option<f64>| bound.map_or(Cell::None, |bound| Cell::Real(bound, 0));
+            vec![Cell::Real(measure.value, 0), bound(measure.low), bound(measure.high), bound(measure.truth_noise)]
+        };
+        vec![self.table(plain)]
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let mut notes: Vec<String> = self.results.iter().map(note).collect();
+        notes.dedup();
+        let lost = |row: &Row| row.measures.iter().any(Measure::is_noise);
+        if self.results.iter().any(lost) {
+            notes.push("lost in noise: below twice what a perfect image would score against this reference".to_owned());
+        }
+        notes
+    }
+}
+
+impl CompareReport {
+    fn table(&self, values: impl Fn(&Measure) -> Vec<Cell>) -> Table {
+        let columns = vec!["image", "layer", "pixels", "masked", "measure", "value", "low", "high", "truth noise"];
+        let mut rows = Vec::new();
+        for row in &self.results {
+            for (name, measure) in MEASURES.iter().zip(&row.measures) {
+                let of = [
+                    Cell::text(&row.image),
+                    Cell::text(&row.layer),
+                    Cell::Count(row.pixels as u64),
+                    Cell::Count(row.masked as u64),
+                    Cell::text(*name),
+                ];
+                rows.push([of.to_vec(), values(measure)].concat());
+            }
+        }
+        Table { name: "measures", columns, rows }
+    }
+}
+
+fn note(row: &Row) -> String {
+    let c = &row.constants;
+    format!(
+        "E0 {} W/m2; relmse: epsilon (0.1 E0)^2 = {}; relmse_standard, _trimmed: {} mean^2; mape: {} mean; flip: \
+         exposure {} EV, {} pixels per degree",
+        figure(c.e0),
+        figure(c.relmse_epsilon),
+        c.relmse_standard_epsilon,
+        c.mape_epsilon,
+        c.flip_exposure,
+        c.flip_pixels_per_degree
+    )
+}

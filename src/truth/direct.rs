@@ -1,0 +1,88 @@
+//! Direct light with shadows, and the mask.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::{
+    eye::Eye,
+    light::sequence::{draw, stream},
+    sums::Sums,
+    trace::{Space, Surface, mask},
+};
+use crate::scene::LightKind;
+
+/// What a seed's numbers are for: eye samples.
+const SAMPLES: u64 = 3;
+/// Independent pictures of direct light: their spread gives its variance.
+const PICTURES: u64 = 8;
+/// Each of them has this many samples a pixel along each axis, one anywhere in each cell.
+const SIDE: usize = 2;
+
+/// Irradiance (W/m² per band) of all lights at a surface seen along `d`; what is in `mask` casts shadows.
+fn irradiance(space: &Space, s: &Surface, d: DVec3, mask: u8) -> DVec3 {
+    let normal = s.facing(d); // geometric: irradiance is flux over area
+    let one = |kind: &LightKind| {
+        let (towards, reach, facing) = match kind {
+            LightKind::Directional { direction, irradiance } => (-*direction, f64::INFINITY, DVec3::from(*irradiance)),
+            LightKind::Point { position, intensity } => {
+                let way = *position - s.p;
+                (way.normalize_or_zero(), way.length(), DVec3::from(*intensity) / way.length_squared())
+            }
+        };
+        let cosine = normal.dot(towards);
+        if cosine > 0.0 && !space.blocked(&s.ray(towards), reach, mask) { facing * cosine } else { DVec3::ZERO }
+    };
+    space.scene.lights.iter().map(|l| one(&l.kind)).sum()
+}
+
+/// The layer of direct light, and what each pixel sees.
+pub struct Direct {
+    /// Its pictures.
+    pub sums: Sums,
+    /// Share of each pixel that looks at a specular object.
+    pub mask: Vec<f64>,
+}
+
+/// Samples every pixel; the same bits for any number of threads.
+pub fn direct(space: &Space, eye: &Eye, seed: u64) -> Direct {
+    let pixels: Vec<_> = (0..eye.pixels()).into_par_iter().map(|pixel| sample(space, eye, seed, pixel)).collect();
+    let mut sums = Sums::new(eye.pixels());
+    for k in 0..PICTURES as usize {
+        let picture: Vec<f64> = pixels.iter().flat_map(|(e, _)| e[k].to_array()).collect();
+        sums.add(&picture);
+    }
+    Direct { sums, mask: pixels.iter().map(|(_, masked)| *masked).collect() }
+}
+
+fn sample(space: &Space, eye: &Eye, seed: u64, pixel: usize) -> ([DVec3; PICTURES as usize], f64) {
+    let mut state = stream(&[seed, SAMPLES, pixel as u64]);
+    let mut pictures = [DVec3::ZERO; PICTURES as usize];
+    let (mut masked, share) = (0.0, 1.0 / (SIDE * SIDE) as f64);
+    for picture in &mut pictures {
+        for cell in 0..SIDE * SIDE {
+            let place = DVec2::new((cell % SIDE) as f64, (cell / SIDE) as f64);
+            let at = (place + DVec2::new(draw(&mut state), draw(&mut state))) / SIDE as f64;
+            let ray = eye.ray(pixel, at);
+            match eye.look(space, &ray) {
+                Some(s) if space.material(&s).is_specular() => masked += share / PICTURES as f64,
+                Some(s) => *picture += share * irradiance(space, &s, ray.d, mask::ALL),
+                None => {}
+            }
+        }
+    }
+    (pictures, masked)
+}
+
+/// The pixels whose middle looks at the region, and that see nothing specular.
+pub fn judged(space: &Space, eye: &Eye, mask: &[f64]) -> Vec<bool> {
+    let region = &space.scene.region;
+    let inside = |p: DVec3| {
+        let from = p - region.center;
+        from.dot(region.u).abs() <= region.u.length_squared() && from.dot(region.v).abs() <= region.v.length_squared()
+    };
+    let looks = |pixel: usize| {
+        let seen = eye.look(space, &eye.ray(pixel, DVec2::splat(0.5)));
+        seen.is_some_and(|s| s.object == region.receiver && inside(s.p))
+    };
+    (0..eye.pixels()).map(|pixel| mask[pixel] == 0.0 && looks(pixel)).collect()
+}

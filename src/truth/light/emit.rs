@@ -1,0 +1,152 @@
+//! Where photons start: over a rectangle or a cone about the specular objects, each light on its own.
+
+use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
+
+use crate::{
+    scene::{LightKind, Scene, Shape},
+    truth::trace::{Ray, Space},
+};
+
+/// Rectangles and cones are wider than what they hold by this share, so that rounding cuts nothing off.
+const MARGIN: f64 = 1e-9;
+
+/// The photons that one light sends towards the specular objects.
+#[derive(Clone, Debug)]
+pub enum Emission {
+    /// Parallel light through a rectangle.
+    Rectangle {
+        /// A corner, m.
+        corner: DVec3,
+        /// Edge, m.
+        u: DVec3,
+        /// Edge, m.
+        v: DVec3,
+        /// Unit direction of travel.
+        d: DVec3,
+        /// Flux through it, W per band.
+        flux: DVec3,
+    },
+    /// A point light in a cone, evenly by solid angle.
+    Cone {
+        /// m
+        apex: DVec3,
+        /// Unit axis and two unit vectors across it.
+        frame: [DVec3; 3],
+        /// 1 − cosine of the half angle: 2 is the whole sphere.
+        height: f64,
+        /// Flux in it, W per band.
+        flux: DVec3,
+    },
+}
+
+impl Emission {
+    /// Of each light in turn; none where nothing is specular.
+    pub fn of(space: &Space) -> Vec<Self> {
+        let held = Held::of(space.scene);
+        if held.is_empty() {
+            return vec![];
+        }
+        let light = |kind: &LightKind| match kind {
+            LightKind::Directional { direction, irradiance } => rectangle(*direction, *irradiance, &held, space),
+            LightKind::Point { position, intensity } => cone(*position, *intensity, &held),
+        };
+        space.scene.lights.iter().map(|l| light(&l.kind)).collect()
+    }
+
+    /// Flux of all its photons, W per band.
+    pub fn flux(&self) -> DVec3 {
+        match self {
+            Self::Rectangle { flux, .. } | Self::Cone { flux, .. } => *flux,
+        }
+    }
+
+    /// The ray of a point of the unit square; equal areas of it carry equal flux.
+    pub fn ray(&self, at: DVec2) -> Ray {
+        match self {
+            Self::Rectangle { corner, u, v, d, .. } => Ray { o: corner + at.x * u + at.y * v, d: *d, left: None },
+            Self::Cone { apex, frame: [axis, x, y], height, .. } => {
+                let below = height * at.x;
+                let across = (below * (2.0 - below)).max(0.0).sqrt();
+                let (sin, cos) = (TAU * at.y).sin_cos();
+                let d = (1.0 - below) * axis + across * (cos * x + sin * y);
+                Ray { o: *apex, d: d.normalize(), left: None }
+            }
+        }
+    }
+}
+
+/// The points and spheres that photons must reach.
+struct Held {
+    balls: Vec<(DVec3, f64)>,
+}
+
+impl Held {
+    fn of(scene: &Scene) -> Self {
+        let specular = scene.objects.iter().filter(|o| scene.materials[o.material].is_specular());
+        let balls = specular.flat_map(|o| match &o.shape {
+            Shape::Sphere { center, radius } => vec![(*center, *radius)],
+            Shape::Quad { center, u, v } => [*u + *v, *u - *v, *v - *u, -*u - *v].map(|d| (center + d, 0.0)).to_vec(),
+            Shape::Mesh { mesh, to_world } => {
+                mesh.positions.iter().map(|p| (to_world.transform_point3(p.as_dvec3()), 0.0)).collect()
+            }
+        });
+        Self { balls: balls.collect() }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.balls.is_empty()
+    }
+
+    fn along(&self, axis: DVec3) -> [f64; 2] {
+        let span = |(c, r): &(DVec3, f64)| [c.dot(axis) - r, c.dot(axis) + r];
+        self.balls.iter().map(span).fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+
+    /// Centre of the box about it.
+    fn middle(&self) -> DVec3 {
+        let along = DVec3::AXES.map(|axis| self.along(axis));
+        DVec3::from_array(along.map(|[low, high]| 0.5 * (low + high)))
+    }
+}
+
+/// Two unit vectors across a unit vector.
+fn across(d: DVec3) -> [DVec3; 2] {
+    let x = d.any_orthonormal_vector();
+    [x, d.cross(x)]
+}
+
+fn rectangle(d: DVec3, irradiance: [f64; 3], held: &Held, space: &Space) -> Emission {
+    let [x, y] = across(d);
+    let wide = |axis: DVec3| {
+        let [low, high] = held.along(axis);
+        let room = MARGIN * (high - low);
+        [low - room, high + room]
+    };
+    let ([x0, x1], [y0, y1]) = (wide(x), wide(y));
+    // Behind everything, as seen along the light.
+    let (centre, radius) = space.ball();
+    let start = centre.dot(d) - radius * (1.0 + MARGIN);
+    let flux = DVec3::from(irradiance) * (x1 - x0) * (y1 - y0);
+    Emission::Rectangle { corner: x0 * x + y0 * y + start * d, u: (x1 - x0) * x, v: (y1 - y0) * y, d, flux }
+}
+
+fn cone(apex: DVec3, intensity: [f64; 3], held: &Held) -> Emission {
+    let axis = (held.middle() - apex).try_normalize();
+    let cosine = axis.map_or(-1.0, |axis| held.balls.iter().map(|b| lowest_cosine(apex, axis, *b)).fold(1.0, f64::min));
+    let axis = axis.unwrap_or(DVec3::Y);
+    let [x, y] = across(axis);
+    let height = ((1.0 - cosine) * (1.0 + MARGIN)).min(2.0);
+    Emission::Cone { apex, frame: [axis, x, y], height, flux: DVec3::from(intensity) * TAU * height }
+}
+
+/// Cosine of the widest angle from the axis at which a ball is seen; −1 from inside it.
+fn lowest_cosine(apex: DVec3, axis: DVec3, (centre, radius): (DVec3, f64)) -> f64 {
+    let way = centre - apex;
+    let distance = way.length();
+    if distance <= radius {
+        return -1.0;
+    }
+    let angle = way.cross(axis).length().atan2(way.dot(axis)) + (radius / distance).asin();
+    if angle < std::f64::consts::PI { angle.cos() } else { -1.0 }
+}
