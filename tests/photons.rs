@@ -29,7 +29,7 @@ const HALF: f64 = 1.0 / 1024.0;
 const VALID: usize = 1;
 
 /// A method's file: takes every photon.
-const TAKES_ALL: &str = "bool captured(vec3 p, vec3 n, uint light) { return true; }\n";
+const TAKES_ALL: &str = "bool captured(vec3 p, vec3 n, uint receiver, uint light) { return true; }\n";
 
 struct Traced {
     plan: Plan,
