@@ -129,18 +129,24 @@ impl Renderer {
 
     /// As [`Self::new`], with shaders of one's own in the place of some shipped ones.
     pub fn with_sources(gpu: &Gpu, job: &Job, sources: Sources) -> Result<Self, RenderError> {
-        Self::prepare(gpu, job, sources, Store::open(), None)
+        Self::prepare(gpu, job, plan(job)?, sources, Store::open(), None)
+    }
+
+    /// As [`Self::new`], with the plan of this very job made before.
+    pub fn planned(gpu: &Gpu, job: &Job, planned: Planned) -> Result<Self, RenderError> {
+        Self::prepare(gpu, job, planned, Sources::default(), Store::open(), None)
     }
 
     /// Plans again for a changed job; what did not change is kept.
     pub fn replan(self, job: &Job) -> Result<Self, RenderError> {
         let Self { gpu, program, sources, store, .. } = self;
-        Self::prepare(&gpu, job, sources, store, Some(program))
+        Self::prepare(&gpu, job, plan(job)?, sources, store, Some(program))
     }
 
     fn prepare(
         gpu: &Gpu,
         job: &Job,
+        planned: Planned,
         sources: Sources,
         store: Store,
         old: Option<Program>,
@@ -153,9 +159,6 @@ impl Renderer {
             }
         }
         let start = Instant::now();
-        let planned = plan(job)?;
-        let plan_ms = start.elapsed().as_secs_f64() * 1e3;
-        let start = Instant::now();
         let mut program = Program::new(gpu, planned.plan.clone(), &sources, &store, old)?;
         let program_ms = start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
@@ -164,7 +167,7 @@ impl Renderer {
         }
         let passes_ms = start.elapsed().as_secs_f64() * 1e3;
         let prepare_ms =
-            vec![("prepare/plan", plan_ms), ("prepare/program", program_ms), ("prepare/passes", passes_ms)];
+            vec![("prepare/plan", planned.plan_ms), ("prepare/program", program_ms), ("prepare/passes", passes_ms)];
         let camera = job.camera()?.clone();
         let eye = eye::view(&camera, job.size, &extents::everything(&job.scene));
         let eye_medium = (eye.origin, accel::medium_index(job.scene.medium_of_eye(&camera, eye.origin)));

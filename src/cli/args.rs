@@ -26,10 +26,10 @@ pub struct RenderArgs {
     /// Timed frames
     #[arg(long, value_name = "R", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub repeat: u32,
-    /// Time of the frame, s
+    /// Time of the frame, s; no shipped scene moves yet
     #[arg(long, value_name = "T", default_value = "0", value_parser = parse_time, allow_negative_numbers = true)]
     pub time: f64,
-    /// Seed of anything random
+    /// Seed of anything random; nothing is yet
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u32,
     #[command(flatten)]

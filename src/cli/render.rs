@@ -1,6 +1,10 @@
 //! `nephroid render`: a job measured, and its files written whole or not at all.
 
-use std::{ops::ControlFlow, sync::atomic::Ordering::Relaxed, time::Instant};
+use std::{
+    ops::ControlFlow,
+    sync::atomic::{AtomicBool, Ordering::Relaxed},
+    time::Instant,
+};
 
 use anyhow::anyhow;
 
@@ -15,26 +19,30 @@ use crate::{
     gpu::{DeviceChoice, Gpu, GpuError, GpuOptions, Plan},
     lab::{self, Experiment, Measured, Provenance, RenderReport, Report, Run},
     passes::eye,
-    renderer::{self, Frame, Job, RenderError, Renderer},
+    renderer::{self, Frame, Job, Planned, RenderError, Renderer},
     whole::OutFolder,
 };
 
-/// Whatever can be found wrong is found before the first frame: options, scene, dumps, folder, device, in this order.
+/// Whatever can be found wrong is found before the first frame: options, scene, plan, dumps, folder, device, in this order.
 pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let job = args.job.job()?;
-    if !args.dump.is_empty() {
-        check_dumps(&args.dump, &renderer::plan(&job)?.plan)?;
-    }
+    let planned = renderer::plan(&job)?;
+    check_dumps(&args.dump, &planned.plan)?;
+    // From here on there is something to take back.
+    let stop = signals::stop_flag()?;
     let mut folder = OutFolder::stage(&args.out)?;
     let run = Run::now(&args.out);
     let gpu = open(args)?;
     say(&format!("device: {}", gpu.info().label()));
     let frame = Frame { time: args.time, index: 0, seed: args.seed, camera: None };
     let experiment = Experiment { frame, warmup: args.warmup, repeat: args.repeat };
-    let (renderer, measured, startup_ms) = measure(&gpu, &job, &experiment, started)?;
+    let (renderer, measured, startup_ms) = measure(&gpu, &job, planned, &experiment, (started, &stop))?;
     let provenance = Provenance::new(&job, &frame, gpu.info(), arguments(std::env::args_os()));
     let attributes = provenance.attributes();
     let report = RenderReport::new(&job, &renderer, &measured, startup_ms, provenance, run);
+    for warning in report.warnings() {
+        say(&format!("warning: {warning}"));
+    }
     lab::write_outputs(&mut folder, &report, &measured.layers, lab::exposure(&job.settings, &job.scene), &attributes)?;
     for name in &args.dump {
         lab::write_dump(&mut folder, &renderer, name, &attributes)?;
@@ -54,12 +62,12 @@ fn open(args: &RenderArgs) -> Result<Gpu, Failure> {
 fn measure(
     gpu: &Gpu,
     job: &Job,
+    planned: Planned,
     experiment: &Experiment,
-    started: Instant,
+    (started, stop): (Instant, &AtomicBool),
 ) -> Result<(Renderer, Measured, f64), Failure> {
-    let stop = signals::stop_flag()?;
     let progress = Progress::new(experiment);
-    let mut renderer = Renderer::new(gpu, job).map_err(|error| with_remedy(error, job))?;
+    let mut renderer = Renderer::planned(gpu, job, planned).map_err(|error| with_remedy(error, job))?;
     let startup_ms = started.elapsed().as_secs_f64() * 1e3;
     let measured = experiment.run(&mut renderer, &mut |step| {
         progress.at(step);

@@ -89,8 +89,11 @@ impl DeviceInfo {
 
     /// One line: name, kind.
     pub fn label(&self) -> String {
-        let warning = if self.is_software() { ", a software device: its times are not those of a GPU" } else { "" };
-        format!("{} ({}{warning})", self.name, self.kind)
+        if self.is_software() {
+            format!("{}, a software device: its times are not those of a GPU", self.name)
+        } else {
+            format!("{} ({})", self.name, self.kind)
+        }
     }
 }
 

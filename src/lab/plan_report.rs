@@ -177,7 +177,7 @@ impl Report for PlanReport {
         let left_out = self.left_out.iter().map(|l| vec![Cell::text(&l.name), Cell::text(&l.reason)]);
         let columns = vec!["resource", "extent", "format", "bytes", "lifetime"];
         vec![
-            Table { name: "passes", columns: vec!["pass", "phase", "work", "bytes written"], rows: passes.collect() },
+            Table { name: "passes", columns: vec!["pass", "phase", "work", "target bytes"], rows: passes.collect() },
             Table { name: "resources", columns, rows: resources.collect() },
             Table { name: "left out", columns: vec!["left out", "because"], rows: left_out.collect() },
         ]

@@ -65,6 +65,11 @@ impl Account {
     pub fn valid_w(&self) -> f64 {
         self.flux_w[1]
     }
+
+    /// Flux that arrives at receivers where the map is not, W.
+    pub fn outside_map_w(&self) -> f64 {
+        self.flux_w[7]
+    }
 }
 
 /// Adds the pass over one view; `capture` says which photons the method takes, and what it reads to know.

@@ -1,5 +1,7 @@
 //! From a job to a plan: which passes the scene needs, and which it does not.
 
+use std::time::Instant;
+
 use super::{Job, RenderError};
 use crate::{
     gpu::{BufferId, ImageId, Lifetime, Plan},
@@ -57,10 +59,13 @@ pub struct Planned {
     pub deposits: Vec<ImageId>,
     /// Bytes a photon; 0 without photons.
     pub photon_bytes: u64,
+    /// What planning took on the host, trees included, ms.
+    pub plan_ms: f64,
 }
 
 /// Plans a frame. Needs no device.
 pub fn plan(job: &Job) -> Result<Planned, RenderError> {
+    let start = Instant::now();
     let camera = job.camera()?;
     let (scene, settings) = (&*job.scene, &job.settings);
     let arrays = SceneArrays::build(scene).map_err(PlanError::from)?;
@@ -79,6 +84,7 @@ pub fn plan(job: &Job) -> Result<Planned, RenderError> {
         accounts: photons.accounts,
         deposits: photons.provided.map(|p| p.deposits).unwrap_or_default(),
         photon_bytes: photons.bytes_each,
+        plan_ms: start.elapsed().as_secs_f64() * 1e3,
     })
 }
 

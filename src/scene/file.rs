@@ -40,8 +40,10 @@ pub struct RegionFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PatchFile {
-    pub center: Floats<2>,
-    pub half: Floats<2>,
+    /// Else the region's.
+    pub center: Option<Floats<2>>,
+    /// Else twice the region's.
+    pub half: Option<Floats<2>>,
 }
 
 /// Exactly one kind is given, as in the tables below.

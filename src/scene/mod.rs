@@ -14,6 +14,7 @@ mod build;
 mod class;
 mod error;
 mod file;
+mod format;
 mod load;
 mod locate;
 mod measure;

@@ -8,14 +8,14 @@ use toml::{
 
 use super::{
     error::{Place, SceneError, near},
-    locate::{Locator, respan},
+    format::{KINDS, keys},
+    locate::{Locator, respan, respanned},
 };
 
-/// Tables that say of what kind their parent is; an override may leave them out.
-const KINDS: [&str; 10] =
-    ["dielectric", "diffuse", "directional", "mesh", "mirror", "orthographic", "pinhole", "point", "quad", "sphere"];
+/// What the check of reserved keys has more to say of than that they are unknown.
+const RESERVED: [&[&str]; 2] = [&["medium"], &["cameras", "region"]];
 
-/// Puts each override into the tree, in order. Only keys that are there can be set.
+/// Puts each override into the tree, in order. Any key of the format can be set, of the things that the scene names.
 pub fn apply<'a>(
     tree: &mut DeTable<'a>,
     file: &str,
@@ -33,15 +33,18 @@ pub fn apply<'a>(
         let parsed = parse(value).map_err(|message| {
             fault("a TOML value", message, "write a number, a quoted string, [a, b, c] or true".to_owned())
         })?;
-        let unknown = || {
-            let keys = paths(tree);
-            let remedy = near(key, keys.iter().map(String::as_str));
-            fault("a key that the scene holds", "no such key".to_owned(), remedy)
+        let span = Locator::override_span(text, index);
+        let Some(path) = resolve(tree, key) else {
+            if let Some((thing, held, asked)) = other_kind(tree, key) {
+                let remedy =
+                    format!("to change its kind, set the whole: --set 'scene.{thing}={{ {asked} = {{ … }} }}'");
+                return Err(fault(&format!("a key of its kind, `{held}`"), format!("the kind `{asked}`"), remedy));
+            }
+            let known = paths(Some(tree), &mut Vec::new());
+            let remedy = near(key, known.iter().map(String::as_str));
+            return Err(fault("a key that the scene holds", "no such key".to_owned(), remedy));
         };
-        let path = resolve(tree, key).ok_or_else(unknown)?;
-        if let Some(slot) = slot(tree, &path) {
-            *slot = respan(parsed, &Locator::override_span(text, index));
-        }
+        put(tree, &path, respan(parsed, &span));
     }
     Ok(())
 }
@@ -55,44 +58,93 @@ fn parse(value: &str) -> Result<Spanned<DeValue<'_>>, String> {
     }
 }
 
-/// The full path of a key, with the kinds that were left out.
-fn resolve(tree: &DeTable, key: &str) -> Option<Vec<String>> {
+/// The full path of a key, with the kinds that were left out; what the file leaves out may be named too.
+fn resolve<'k>(tree: &DeTable, key: &'k str) -> Option<Vec<&'k str>> {
+    let names: Vec<&str> = key.split('.').collect();
+    if RESERVED.iter().any(|reserved| names.starts_with(reserved)) {
+        return Some(names);
+    }
     let (mut path, mut table) = (Vec::new(), Some(tree));
-    for name in key.split('.') {
-        let (kind, value) = child(table?, name)?;
-        path.extend(kind.map(str::to_owned));
-        path.push(name.to_owned());
-        table = value.as_table();
+    for (at, name) in names.iter().enumerate() {
+        if !holds(table, &path, name) {
+            let kind = table.and_then(kind_in)?;
+            path.push(kind);
+            table = child(table, kind);
+            if !holds(table, &path, name) {
+                return None;
+            }
+        }
+        let value = table.and_then(|table| table.get(*name));
+        table = child(table, name);
+        path.push(name);
+        // A value that is no table has no keys below it.
+        if value.is_some() && table.is_none() && at + 1 < names.len() {
+            return None;
+        }
     }
     Some(path)
 }
 
-fn child<'t, 'a>(table: &'t DeTable<'a>, name: &str) -> Option<(Option<&'t str>, &'t DeValue<'a>)> {
-    let through = |kind: &'static str| Some((Some(kind), table.get(kind)?.get_ref().as_table()?.get(name)?.get_ref()));
-    let direct = table.get(name).map(|value| (None, value.get_ref()));
-    direct.or_else(|| KINDS.into_iter().find_map(through))
+/// Whether `name` stands in the table, or may: a second kind may not.
+fn holds(table: Option<&DeTable>, path: &[&str], name: &str) -> bool {
+    let there = table.is_some_and(|table| table.contains_key(name));
+    let second = KINDS.contains(&name) && table.and_then(kind_in).is_some();
+    there || (keys(path).contains(&name) && !second)
 }
 
-fn slot<'t, 'a>(tree: &'t mut DeTable<'a>, path: &[String]) -> Option<&'t mut Spanned<DeValue<'a>>> {
-    let (last, parents) = path.split_last()?;
+/// The kind that a table holds.
+fn kind_in(table: &DeTable) -> Option<&'static str> {
+    KINDS.into_iter().find(|kind| child(Some(table), kind).is_some())
+}
+
+fn child<'t, 'a>(table: Option<&'t DeTable<'a>>, name: &str) -> Option<&'t DeTable<'a>> {
+    table?.get(name)?.get_ref().as_table()
+}
+
+/// Where a key asks for another kind than the one its thing is of: the thing, its kind, and the one asked for.
+fn other_kind(tree: &DeTable, key: &str) -> Option<(String, &'static str, String)> {
+    let names: Vec<&str> = key.split('.').collect();
+    let [family, thing, asked, ..] = names[..] else { return None };
+    let held = kind_in(child(child(Some(tree), family), thing)?)?;
+    let kind = asked != held && KINDS.contains(&asked) && keys(&[family, thing]).contains(&asked);
+    kind.then(|| (format!("{family}.{thing}"), held, asked.to_owned()))
+}
+
+/// Sets a value; tables on the way that are not there are made.
+fn put<'a>(tree: &mut DeTable<'a>, path: &[&'a str], value: Spanned<DeValue<'a>>) {
+    let Some((last, parents)) = path.split_last() else { return };
+    let span = value.span();
+    let key = |name: &'a str| respanned(Cow::Borrowed(name), &span);
     let mut table = tree;
-    for name in parents {
-        table = match table.get_mut(name.as_str())?.get_mut() {
-            DeValue::Table(inner) => inner,
-            _ => return None,
+    for &name in parents {
+        if child(Some(table), name).is_none() {
+            table.insert(key(name), Spanned::new(span.clone(), DeValue::Table(DeTable::new())));
+        }
+        table = match table.get_mut(name).map(Spanned::get_mut) {
+            Some(DeValue::Table(inner)) => inner,
+            _ => return,
         };
     }
-    table.get_mut(last.as_str())
+    match table.get_mut(*last) {
+        Some(slot) => *slot = value,
+        None => drop(table.insert(key(last), value)),
+    }
 }
 
-/// Every dotted path of the tree.
-fn paths(table: &DeTable) -> Vec<String> {
+/// Every dotted path that can be set.
+fn paths<'t>(table: Option<&'t DeTable>, path: &mut Vec<&'t str>) -> Vec<String> {
+    let there = table.into_iter().flat_map(|table| table.keys()).map(|name| name.get_ref().as_ref());
+    let absent = keys(path).iter().copied().filter(|name| table.is_none_or(|table| !table.contains_key(*name)));
+    let names: Vec<&str> = there.chain(absent.filter(|name| holds(table, path, name))).collect();
     let mut all = Vec::new();
-    for (name, value) in table {
-        all.push(name.get_ref().to_string());
-        if let DeValue::Table(inner) = value.get_ref() {
-            all.extend(paths(inner).into_iter().map(|rest| format!("{}.{rest}", name.get_ref())));
+    for name in names {
+        all.push(name.to_owned());
+        path.push(name);
+        let value = table.and_then(|table| table.get(name));
+        if value.is_none_or(|value| value.get_ref().as_table().is_some()) {
+            all.extend(paths(child(table, name), path).into_iter().map(|rest| format!("{name}.{rest}")));
         }
+        path.pop();
     }
     all
 }

@@ -23,8 +23,14 @@ pub fn regions(
     let receiver = Receiver::find(&key, &region.receiver, scene)?;
     let inner = receiver.patch(&key, region.center, region.half, unit)?;
     let outer = match extent {
-        Some(patch) => receiver.patch(&root.key("extent"), patch.center, patch.half, unit)?,
-        None => receiver.cut(Patch { half: 2.0 * inner.half, ..inner }),
+        Some(PatchFile { center, half: Some(half) }) => {
+            receiver.patch(&root.key("extent"), center.unwrap_or(region.center), *half, unit)?
+        }
+        Some(PatchFile { center: Some(center), half: None }) => {
+            let around = receiver.patch(&root.key("extent"), *center, region.half, unit)?;
+            receiver.cut(Patch { half: 2.0 * inner.half, ..around })
+        }
+        Some(PatchFile { center: None, half: None }) | None => receiver.cut(Patch { half: 2.0 * inner.half, ..inner }),
     };
     Ok((receiver.region(inner), receiver.region(outer)))
 }

@@ -98,6 +98,22 @@ fn without_photons_the_ratio_is_null() {
 }
 
 #[test]
+fn light_that_misses_the_map_is_said_with_the_remedy() {
+    const SAID: &str = "falls outside the caustic map";
+    for aside in ["--set scene.lights.sun.direction=[2,-1,0]", "--set scene.objects.floor.v=[0,0,8]"] {
+        let (_folder, out, ran) = rendered(&format!("glass-sphere {aside}"));
+        assert!(ran.err.contains(SAID) && ran.err.contains("scene.extent.half"), "{aside}: {}", ran.err);
+        assert!(ran.out.contains(SAID) && ran.out.contains("u × v"), "{aside}: {}", ran.out);
+        assert_eq!(result(&out)["warnings"].as_array().unwrap().len(), 1, "{aside}");
+    }
+    for inside in ["glass-sphere", "diffuse", "glass-sphere --set scene.extent.half=[6,6]"] {
+        let (_folder, out, ran) = rendered(inside);
+        assert!(!ran.err.contains(SAID) && !ran.out.contains(SAID), "{inside}: {}", ran.err);
+        assert_eq!(result(&out)["warnings"].as_array().unwrap().len(), 0, "{inside}");
+    }
+}
+
+#[test]
 fn layers_and_provenance_are_in_the_pictures() {
     let (_folder, out, _) = rendered("null --seed 7 --set scene.exposure=1.5");
     let (layers, provenance) = exr(&out.join("image.exr"));

@@ -159,6 +159,27 @@ fn a_kind_may_be_left_out_or_changed() {
     assert_eq!(mirror.materials[0].kind, MaterialKind::Mirror { reflectance: [1.0, 0.9, 0.5] });
 }
 
+/// Keys that the file leaves at their default are set as if it had written them.
+#[test]
+fn what_the_file_leaves_out_can_be_set() {
+    let folder = Folder::new();
+    let set = |key, value| folder.load(BASE, &[(key, value)]).unwrap();
+    assert_eq!(set("extent.half", "[3, 3]").extent.area(), 36.0);
+    let aside = set("extent.center", "[1, 1]").extent;
+    close(aside.center, dvec3(1.0, -1.5, -1.0), ROUNDING);
+    assert_eq!(aside.area(), 16.0);
+    assert_eq!(set("exposure", "2").exposure, 2.0);
+    assert!(!set("objects.floor.visible_to_camera", "false").objects[1].visible_to_camera);
+    let bare = BASE.replace("up = [0, 1, 0]\n", "").replace("absorption = [0, 0.1, 0]\n", "");
+    for key in ["cameras.main.pinhole.up", "cameras.main.up"] {
+        let scene = folder.load(&bare, &[(key, "[1, 0, 0]"), ("cameras.main.hides_specular", "true")]).unwrap();
+        assert!(scene.cameras["main"].up == DVec3::X && scene.cameras["main"].hides_specular, "{key}");
+    }
+    let scene = folder.load(&bare, &[("materials.glass.absorption", "0.5")]).unwrap();
+    assert_eq!(scene.materials[0].kind, MaterialKind::Dielectric { ior: 1.5, absorption: [0.5; 3] });
+    assert!(scene.source.resolved.contains("absorption = 0.5"));
+}
+
 #[test]
 fn comments_do_not_change_the_hash_and_meshes_do() {
     let folder = Folder::new();

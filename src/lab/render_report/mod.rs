@@ -40,6 +40,7 @@ pub struct RenderReport {
     energy: EnergyRow,
     exposure_ev: f64,
     nonfinite_pixels: usize,
+    warnings: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -128,7 +129,13 @@ impl RenderReport {
             energy: EnergyRow::new(&measured.energy, &measured.account),
             exposure_ev: exposure(&job.settings, &job.scene),
             nonfinite_pixels: nonfinite_pixels(&measured.layers),
+            warnings: outside_map(&measured.account, &job.camera).into_iter().collect(),
         }
+    }
+
+    /// What a reader of the numbers must know.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 }
 
@@ -207,6 +214,25 @@ impl EnergyRow {
             flux_w: flux.chain([("other_paths".to_owned(), account.other_paths_w.into())]).collect(),
         }
     }
+}
+
+/// Share of the flux arriving at receivers that may fall outside the map before it is said.
+const OUTSIDE: f64 = 0.01;
+
+/// Says how much of the light that arrives at receivers the map does not hold, where it is more than a trifle.
+fn outside_map(account: &Account, camera: &str) -> Option<String> {
+    let outside = account.outside_map_w();
+    let share = outside / (account.valid_w() + outside);
+    // Without any light the share is no number, and nothing is said.
+    let patch = if camera == "region" { "region" } else { "extent" };
+    (share > OUTSIDE).then(|| {
+        format!(
+            "{:.1} % of the flux that arrives at receivers falls outside the caustic map and is not shown; \
+             widen `[{patch}]`, such as by --set scene.{patch}.half=[U, V] (the receiver's size is the limit), \
+             or turn the receiver so that its lit side, u × v, faces the light",
+            100.0 * share
+        )
+    })
 }
 
 /// Pixels with a value that is not finite, in whichever layer.

@@ -54,6 +54,7 @@ impl Report for RenderReport {
                 self.exposure_ev, self.nonfinite_pixels
             ),
         ];
+        notes.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
         if self.device.software {
             let device = &self.device.name;
             notes.push(format!(
@@ -80,7 +81,7 @@ impl RenderReport {
             ]
         });
         let columns =
-            vec!["stage", "median ms", "MAD ms", "% of span", "points", "fragments", "invocations", "bytes written"];
+            vec!["stage", "median ms", "MAD ms", "% of span", "points", "fragments", "invocations", "target bytes"];
         Table { name: "stages", columns, rows: rows.collect() }
     }
 

@@ -1,0 +1,76 @@
+//! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
+
+/// Tables that say of what kind their parent is; a dotted key may leave them out.
+pub const KINDS: [&str; 10] =
+    ["dielectric", "diffuse", "directional", "mesh", "mirror", "orthographic", "pinhole", "point", "quad", "sphere"];
+
+/// Keys that a table may have. The deserialiser judges them in the end; the test below holds the two together.
+pub fn keys(path: &[&str]) -> &'static [&'static str] {
+    match path {
+        [] => &[
+            "version",
+            "title",
+            "unit",
+            "paths",
+            "exposure",
+            "region",
+            "extent",
+            "cameras",
+            "objects",
+            "materials",
+            "lights",
+        ],
+        ["region"] => &["receiver", "center", "half"],
+        ["extent"] => &["center", "half"],
+        ["cameras", _] => &["pinhole", "orthographic"],
+        ["objects", _] => &["material", "visible_to_camera", "sphere", "quad", "mesh"],
+        ["materials", _] => &["diffuse", "dielectric", "mirror"],
+        ["lights", _] => &["directional", "point"],
+        ["cameras", _, "pinhole"] => &["position", "target", "up", "hides_specular", "fov_y"],
+        ["cameras", _, "orthographic"] => &["position", "target", "up", "hides_specular", "height", "width"],
+        ["objects", _, "sphere"] => &["center", "radius"],
+        ["objects", _, "quad"] => &["center", "u", "v"],
+        ["objects", _, "mesh"] => &["file", "fit", "center", "rotate"],
+        ["materials", _, "diffuse"] => &["albedo"],
+        ["materials", _, "dielectric"] => &["ior", "absorption"],
+        ["materials", _, "mirror"] => &["reflectance"],
+        ["lights", _, "directional"] => &["direction", "irradiance"],
+        ["lights", _, "point"] => &["position", "intensity"],
+        _ => &[],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::keys;
+    use crate::scene::file;
+
+    /// The keys that the deserialiser names when it meets one that it does not know.
+    fn known<T: for<'de> Deserialize<'de>>() -> Vec<String> {
+        let error = toml::from_str::<T>("no_key_of_any = 1").err().expect("an unknown key").message().to_owned();
+        error.split('`').skip(3).step_by(2).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn the_deserialiser_knows_the_same_keys() {
+        assert_eq!(keys(&[]), known::<file::SceneFile>());
+        assert_eq!(keys(&["region"]), known::<file::RegionFile>());
+        assert_eq!(keys(&["extent"]), known::<file::PatchFile>());
+        assert_eq!(keys(&["cameras", ""]), known::<file::CameraFile>());
+        assert_eq!(keys(&["cameras", "", "pinhole"]), known::<file::PinholeFile>());
+        assert_eq!(keys(&["cameras", "", "orthographic"]), known::<file::OrthographicFile>());
+        assert_eq!(keys(&["objects", ""]), known::<file::ObjectFile>());
+        assert_eq!(keys(&["objects", "", "sphere"]), known::<file::SphereFile>());
+        assert_eq!(keys(&["objects", "", "quad"]), known::<file::QuadFile>());
+        assert_eq!(keys(&["objects", "", "mesh"]), known::<file::MeshFile>());
+        assert_eq!(keys(&["materials", ""]), known::<file::MaterialFile>());
+        assert_eq!(keys(&["materials", "", "diffuse"]), known::<file::DiffuseFile>());
+        assert_eq!(keys(&["materials", "", "dielectric"]), known::<file::DielectricFile>());
+        assert_eq!(keys(&["materials", "", "mirror"]), known::<file::MirrorFile>());
+        assert_eq!(keys(&["lights", ""]), known::<file::LightFile>());
+        assert_eq!(keys(&["lights", "", "directional"]), known::<file::DirectionalFile>());
+        assert_eq!(keys(&["lights", "", "point"]), known::<file::PointFile>());
+    }
+}
