@@ -170,7 +170,7 @@ mod tests {
         let on = [DVec3::ONE, DVec3::new(1.0, 1.0, 0.2), DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 0.3, -0.6)];
         for p in on {
             let w = winding(&mesh, p);
-            assert!(w >= -ROUNDING && w <= 1.0 + ROUNDING, "{p}: {w}");
+            assert!((-ROUNDING..=1.0 + ROUNDING).contains(&w), "{p}: {w}");
         }
     }
 
