@@ -8,7 +8,7 @@ use nephroid::{
     image::Layers,
     scene::{PathClass, Scene},
     truth::{
-        Goal, Run, Task,
+        Estimator, Goal, Run, Task,
         closed::{GlassSphere, Illumination, SphereCaustic, flat_water},
         light::Photons,
         trace::Space,
@@ -28,7 +28,7 @@ fn scene(name: &str, set: &[(&str, &str)]) -> Scene {
 
 fn task(paths: PathClass, size: [u32; 2], seed: u64, photons: u64) -> Task {
     let goal = Goal { photons: Some(photons), noise: None };
-    Task { paths, camera: "region".to_owned(), size, seed, goal }
+    Task { estimator: Estimator::Photons, paths, camera: "region".to_owned(), size, seed, goal }
 }
 
 /// Runs a task to its end, `width` chunks at a time.

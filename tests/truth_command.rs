@@ -65,7 +65,10 @@ fn a_finished_truth_is_listed_reused_and_cleared() {
     let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert!(read("a.exr") == read("b.exr"));
     let listed = String::from_utf8(run("truth --list", &folder, "").stdout).unwrap();
-    assert!(listed.lines().count() == 2 && listed.contains("glass-sphere  transmit-2  region  16x16"), "{listed}");
+    assert!(
+        listed.lines().count() == 2 && listed.contains("glass-sphere  photons  transmit-2  region  16x16"),
+        "{listed}"
+    );
     assert_eq!(run("truth --clear", &folder, "").stdout, b"1 removed\n");
     assert_eq!(String::from_utf8(run("truth --list", &folder, "").stdout).unwrap().lines().count(), 1);
 }

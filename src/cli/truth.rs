@@ -24,7 +24,7 @@ use crate::{
     lab::LabError,
     scene::{Camera, PathClass, Scene},
     store::{Key, Store},
-    truth::{Goal, Run, Standing, Task, trace::Space},
+    truth::{Estimator, Goal, Run, Standing, Task, trace::Space},
     whole::write_whole,
 };
 
@@ -46,16 +46,20 @@ pub struct TruthArgs {
     /// `main`, `region` (the receiver region along its normal, specular objects hidden), or another of the scene's
     #[arg(long, value_name = "NAME", default_value = "main")]
     camera: String,
+    /// photons: unbiased, with a variance; cells: light spread over where it lands, with no noise
+    #[arg(long, value_name = "HOW", default_value_t)]
+    estimator: Estimator,
     /// Which light paths are the caustic: reflect-1, transmit-1, transmit-2 or all:N [default: the scene's]
     #[arg(long, value_name = "CLASS")]
     paths: Option<PathClass>,
     /// Size of the picture, pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_size)]
     size: [u32; 2],
-    /// Finish after this many photons, rounded up to whole chunks
+    /// Finish after this many photons, rounded up to whole chunks; of cells, a grid of so many
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     photons: Option<u64>,
-    /// Finish when the estimated noise of the caustic is this low: relmse=X [default: relmse=1e-4 without --photons]
+    /// Finish when the estimated noise of the caustic (of cells: the change by doubling the grid) is this low: relmse=X
+    /// [default: relmse=1e-4 without --photons]
     #[arg(long, value_name = "relmse=X", value_parser = parse_noise)]
     until: Option<f64>,
     /// Stop after this time and write what there is; --resume goes on from there
@@ -93,7 +97,8 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     let noise = args.until.or(args.photons.is_none().then_some(DEFAULT_NOISE));
     let goal = Goal { photons: args.photons, noise };
     let paths = args.paths.unwrap_or(scene.paths);
-    let task = Task { paths, camera: args.camera.clone(), size: args.size, seed: args.seed, goal };
+    let (estimator, camera_name) = (args.estimator, args.camera.clone());
+    let task = Task { estimator, paths, camera: camera_name, size: args.size, seed: args.seed, goal };
     let key = task.key(&scene);
     if let Some(bytes) = store.get(KIND, &key) {
         write_whole(out, |file| file.write_all(&bytes))?;
@@ -121,7 +126,7 @@ fn make(
     if args.resume {
         say(&partial.read(&mut run));
     }
-    let progress = Progress::new(task.goal, args.max_seconds, run.standing().photons);
+    let progress = Progress::new(args.max_seconds, run.standing().photons);
     let (mut failed, mut written) = (None, None::<(Instant, std::time::Duration)>);
     let standing = run.advance(rayon::current_num_threads(), |run, standing| {
         progress.at(&standing);
@@ -153,7 +158,7 @@ fn make(
 }
 
 fn summary(standing: &Standing, out: &Path, started: Instant) -> String {
-    let Standing { photons, noise, finished } = standing;
+    let Standing { photons, noise, finished, .. } = standing;
     let early = if *finished { "" } else { "; not finished, --resume goes on" };
     let seconds = started.elapsed().as_secs_f64();
     format!("written: {}: {photons} photons, noise relmse {noise:.2e}, {seconds:.1} s{early}", out.display())
@@ -199,17 +204,16 @@ fn listing(store: &Store) -> String {
     let row = |key: &Key| {
         let (_, about) = Layers::from_exr(&store.get(KIND, key)?).ok()?;
         let of = |name: &str| about.get(name).map_or("?", String::as_str).to_owned();
-        let names = ["scene.name", "paths", "camera", "size", "seed", "photons", "noise.relmse"];
+        let names = ["scene.name", "estimator", "paths", "camera", "size", "seed", "photons", "noise.relmse"];
         Some(names.map(of).join("  "))
     };
     let rows = store.list(KIND).into_iter().filter_map(|e| Some(format!("{}  {} bytes\n", row(&e.key)?, e.bytes)));
-    "scene  paths  camera  size  seed  photons  noise\n".to_owned() + &rows.collect::<String>()
+    "scene  estimator  paths  camera  size  seed  photons  noise\n".to_owned() + &rows.collect::<String>()
 }
 
 /// A bar on stderr, on a terminal alone: how far, how noisy, how long still.
 struct Progress {
     bar: ProgressBar,
-    goal: Goal,
     max_seconds: Option<f64>,
     /// Photons before this run.
     before: u64,
@@ -219,19 +223,15 @@ struct Progress {
 impl Progress {
     const STEPS: u64 = 1000;
 
-    fn new(goal: Goal, max_seconds: Option<f64>, before: u64) -> Self {
+    fn new(max_seconds: Option<f64>, before: u64) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}");
         let bar = ProgressBar::new(Self::STEPS).with_message("direct light");
         let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self { bar, goal, max_seconds, before, started: Instant::now() }
+        Self { bar, max_seconds, before, started: Instant::now() }
     }
 
-    /// Relative noise falls as 1/photons, so the photons still needed follow from the noise.
     fn at(&self, standing: &Standing) {
-        let done = standing.photons as f64;
-        let by_photons = self.goal.photons.map(|n| n as f64 - done);
-        let by_noise = self.goal.noise.map(|most| done * (standing.noise / most - 1.0));
-        let missing = by_photons.into_iter().chain(by_noise).fold(f64::INFINITY, f64::min).max(0.0);
+        let (done, missing) = (standing.photons as f64, standing.missing);
         let seconds = self.started.elapsed().as_secs_f64();
         let made = (standing.photons - self.before).max(1) as f64;
         let limit = self.max_seconds.map_or(f64::INFINITY, |most| (most - seconds).max(0.0));

@@ -4,12 +4,15 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::{
+    estimate::Sums,
     eye::Eye,
     light::sequence::{draw, stream},
-    sums::Sums,
     trace::{Space, Surface, mask},
 };
-use crate::scene::LightKind;
+use crate::{
+    optics::transmittance,
+    scene::{LightKind, MaterialKind},
+};
 
 /// What a seed's numbers are for: eye samples.
 const SAMPLES: u64 = 3;
@@ -18,21 +21,38 @@ const PICTURES: u64 = 8;
 /// Each of them has this many samples a pixel along each axis, one anywhere in each cell.
 const SIDE: usize = 2;
 
-/// Irradiance (W/m² per band) of all lights at a surface seen along `d`; what is in `mask` casts shadows.
-fn irradiance(space: &Space, s: &Surface, d: DVec3, mask: u8) -> DVec3 {
+/// A light, and the absorption of the medium that it is in, 1/m per band.
+type Lamp<'a> = (&'a LightKind, [f64; 3]);
+
+fn lamps<'a>(space: &Space<'a>) -> Vec<Lamp<'a>> {
+    let absorption = |kind: &LightKind| {
+        let LightKind::Point { position, .. } = kind else { return [0.0; 3] };
+        match space.media(*position).innermost().map(|m| &space.scene.materials[m].kind) {
+            Some(MaterialKind::Dielectric { absorption, .. }) => *absorption,
+            _ => [0.0; 3],
+        }
+    };
+    space.scene.lights.iter().map(|l| (&l.kind, absorption(&l.kind))).collect()
+}
+
+/// Irradiance (W/m² per band) of all lights at a surface seen along `d`. All that there is casts shadows, so light that
+/// arrives has been in the light's own medium all the way.
+fn irradiance(space: &Space, lamps: &[Lamp], s: &Surface, d: DVec3) -> DVec3 {
     let normal = s.facing(d); // geometric: irradiance is flux over area
-    let one = |kind: &LightKind| {
+    let one = |(kind, absorption): &Lamp| {
         let (towards, reach, facing) = match kind {
             LightKind::Directional { direction, irradiance } => (-*direction, f64::INFINITY, DVec3::from(*irradiance)),
             LightKind::Point { position, intensity } => {
                 let way = *position - s.p;
-                (way.normalize_or_zero(), way.length(), DVec3::from(*intensity) / way.length_squared())
+                let left = DVec3::from(absorption.map(|a| transmittance(a, way.length())));
+                (way.normalize_or_zero(), way.length(), left * DVec3::from(*intensity) / way.length_squared())
             }
         };
         let cosine = normal.dot(towards);
-        if cosine > 0.0 && !space.blocked(&s.ray(towards), reach, mask) { facing * cosine } else { DVec3::ZERO }
+        let lit = cosine > 0.0 && !space.blocked(&s.ray(towards), reach, mask::ALL);
+        if lit { facing * cosine } else { DVec3::ZERO }
     };
-    space.scene.lights.iter().map(|l| one(&l.kind)).sum()
+    lamps.iter().map(one).sum()
 }
 
 /// The layer of direct light, and what each pixel sees.
@@ -45,7 +65,9 @@ pub struct Direct {
 
 /// Samples every pixel; the same bits for any number of threads.
 pub fn direct(space: &Space, eye: &Eye, seed: u64) -> Direct {
-    let pixels: Vec<_> = (0..eye.pixels()).into_par_iter().map(|pixel| sample(space, eye, seed, pixel)).collect();
+    let lamps = lamps(space);
+    let sample = |pixel| sample(space, &lamps, eye, seed, pixel);
+    let pixels: Vec<_> = (0..eye.pixels()).into_par_iter().map(sample).collect();
     let mut sums = Sums::new(eye.pixels());
     for k in 0..PICTURES as usize {
         let picture: Vec<f64> = pixels.iter().flat_map(|(e, _)| e[k].to_array()).collect();
@@ -54,7 +76,7 @@ pub fn direct(space: &Space, eye: &Eye, seed: u64) -> Direct {
     Direct { sums, mask: pixels.iter().map(|(_, masked)| *masked).collect() }
 }
 
-fn sample(space: &Space, eye: &Eye, seed: u64, pixel: usize) -> ([DVec3; PICTURES as usize], f64) {
+fn sample(space: &Space, lamps: &[Lamp], eye: &Eye, seed: u64, pixel: usize) -> ([DVec3; PICTURES as usize], f64) {
     let mut state = stream(&[seed, SAMPLES, pixel as u64]);
     let mut pictures = [DVec3::ZERO; PICTURES as usize];
     let (mut masked, share) = (0.0, 1.0 / (SIDE * SIDE) as f64);
@@ -65,7 +87,7 @@ fn sample(space: &Space, eye: &Eye, seed: u64, pixel: usize) -> ([DVec3; PICTURE
             let ray = eye.ray(pixel, at);
             match eye.look(space, &ray) {
                 Some(s) if space.material(&s).is_specular() => masked += share / PICTURES as f64,
-                Some(s) => *picture += share * irradiance(space, &s, ray.d, mask::ALL),
+                Some(s) => *picture += share * irradiance(space, lamps, &s, ray.d),
                 None => {}
             }
         }

@@ -23,9 +23,11 @@ pub struct Eye {
 
 /// A point as the eye sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    /// Index of the pixel, rows from the top.
-    pub pixel: usize,
+pub struct Projected {
+    /// Pixels from the left and from the top; outside the picture too.
+    pub at: DVec2,
+    /// By what a length across the axis is divided in the picture's plane: metres along the axis, or 1 if orthographic.
+    pub scale: f64,
     /// Unit direction to the eye.
     pub towards: DVec3,
     /// Metres to the eye (to the camera's plane, if orthographic).
@@ -73,8 +75,8 @@ impl Eye {
         space.nearest(ray, self.mask)
     }
 
-    /// The pixel that looks at a point, whatever lies between; `None` outside the picture and behind the eye.
-    pub fn see(&self, p: DVec3) -> Option<Seen> {
+    /// Where a point is in the picture's plane, whatever lies between; `None` behind the eye.
+    pub fn project(&self, p: DVec3) -> Option<Projected> {
         let way = p - self.position;
         let depth = way.dot(self.forward);
         if depth.is_nan() || depth <= 0.0 {
@@ -84,20 +86,23 @@ impl Eye {
         let window = DVec2::new(way.dot(self.right), -way.dot(self.up)) / (scale * self.half);
         let [width, height] = self.size.map(f64::from);
         let at = DVec2::new((window.x + 1.0) * 0.5 * width, (window.y + 1.0) * 0.5 * height);
-        if !(at.x >= 0.0 && at.x < width && at.y >= 0.0 && at.y < height) {
-            return None;
-        }
-        let pixel = at.y as usize * self.size[0] as usize + at.x as usize;
         let area = 4.0 * self.half.x * self.half.y / (width * height);
         if self.perspective {
             // Solid angle to area of the window: 1/cos³ of the angle to the axis.
             let distance = way.length();
             let cosine = depth / distance;
             let density = 1.0 / (distance * distance * cosine * cosine * cosine * area);
-            Some(Seen { pixel, towards: -way / distance, distance, density })
+            Some(Projected { at, scale, towards: -way / distance, distance, density })
         } else {
-            Some(Seen { pixel, towards: -self.forward, distance: depth, density: 1.0 / area })
+            Some(Projected { at, scale, towards: -self.forward, distance: depth, density: 1.0 / area })
         }
+    }
+
+    /// The pixel at a place of the picture's plane; `None` outside the picture.
+    pub fn pixel(&self, at: DVec2) -> Option<usize> {
+        let [width, height] = self.size.map(f64::from);
+        let inside = at.x >= 0.0 && at.x < width && at.y >= 0.0 && at.y < height;
+        inside.then(|| at.y as usize * self.size[0] as usize + at.x as usize)
     }
 
     /// Whether anything that the eye sees hides a point of a surface from it. `from` starts on the surface.
@@ -121,10 +126,11 @@ mod tests {
             let eye = Eye::new(&scene.cameras[name], [12, 7]);
             for pixel in 0..eye.pixels() {
                 let ray = eye.ray(pixel, DVec2::new(0.3, 0.9));
-                let seen = eye.see(ray.o + 2.5 * ray.d).unwrap();
-                assert!(seen.pixel == pixel && (seen.towards + ray.d).length() < 1e-12, "{name} {pixel}: {seen:?}");
+                let seen = eye.project(ray.o + 2.5 * ray.d).unwrap();
+                let found = eye.pixel(seen.at) == Some(pixel);
+                assert!(found && (seen.towards + ray.d).length() < 1e-12, "{name} {pixel}: {seen:?}");
             }
-            assert!(eye.see(eye.position - eye.forward).is_none());
+            assert!(eye.project(eye.position - eye.forward).is_none());
         }
     }
 
@@ -141,7 +147,7 @@ mod tests {
             let at = |k: i32| eye.right * (reach.x * mid(k % cells)) + eye.up * (reach.y * mid(k / cells));
             let points = (0..cells * cells).map(|k| eye.position + 2.0 * eye.forward + at(k));
             let sum: f64 =
-                points.filter_map(|p| eye.see(p)).map(|s| cell * -s.towards.dot(eye.forward) * s.density).sum();
+                points.filter_map(|p| eye.project(p)).map(|s| cell * -s.towards.dot(eye.forward) * s.density).sum();
             assert!((sum - 1.0).abs() < MIDPOINT, "{name}: {sum}");
         }
     }

@@ -3,17 +3,19 @@
 //! It shares no code with the GPU path: only scenes, meshes and optics of the lowest floor.
 //!
 //! * [`trace`]: rays and surfaces. [`light`]: photons from the lights to the first diffuse surface, by path class.
-//! * [`Run`]: their sum in the pixels of a camera with its variance; direct light and the mask beside it.
+//! * [`estimate`]: a caustic's irradiance by photons counted in pixels, or by cells of light spread over them.
+//! * [`Run`]: an estimate through a camera with its variance; direct light and the mask beside it.
 //! * [`closed`]: what is known without photons.
 //!
 //! Pixels that look at or through specular objects see no caustic here; the mask names them.
 
 pub mod closed;
 mod direct;
+pub mod estimate;
 mod eye;
 pub mod light;
 mod run;
-mod sums;
 pub mod trace;
 
+pub use estimate::Estimator;
 pub use run::{Goal, Run, Standing, Task, VERSION};

@@ -1,13 +1,13 @@
-//! A truth in the making: chunks of photons, added in their order until the goal is met.
+//! A truth in the making: chunks of an estimate, added in their order until the goal is met.
 
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 use super::{
     direct::{Direct, direct, judged},
+    estimate::{BANDS, CHUNKS, Cells, Counts, Estimate, Estimator, Judged},
     eye::Eye,
     light::Photons,
-    sums::{BANDS, Sums},
     trace::Space,
 };
 use crate::{
@@ -18,18 +18,18 @@ use crate::{
 };
 
 /// Raised whenever the same task would give other numbers.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// ε of the judged figure: (this share of E₀)².
 const EPSILON: f64 = 0.1;
-/// Chunks before an estimate of noise is believed.
-const CHUNKS: u64 = 32;
 /// Photons of a chunk, at least and at most.
 const PER_CHUNK: [u64; 2] = [1 << 10, 1 << 16];
 
 /// What decides every bit of a truth.
 #[derive(Clone, Debug)]
 pub struct Task {
+    /// By which of the two ways.
+    pub estimator: Estimator,
     /// Which light paths are its caustic.
     pub paths: PathClass,
     /// Name of the scene's camera.
@@ -45,9 +45,9 @@ pub struct Task {
 /// When a truth is finished: by whichever comes first.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
-    /// This many photons, rounded up to whole chunks.
+    /// This many photons, rounded up to whole chunks; of cells, a grid of so many.
     pub photons: Option<u64>,
-    /// An estimated noise, as relMSE, of at most this.
+    /// An estimated noise, as relMSE, of at most this; of cells, a change by the last doubling.
     pub noise: Option<f64>,
 }
 
@@ -59,18 +59,21 @@ impl Task {
 
     /// What a finished truth of this task is found by.
     pub fn key(&self, scene: &Scene) -> Key {
-        let Self { paths, camera, size, seed, goal } = self;
-        Key::of([format!("{VERSION} {} {paths} {camera} {size:?} {seed} {goal:?}", scene.source.hash)])
+        let Self { estimator, paths, camera, size, seed, goal } = self;
+        let scene = &scene.source.hash;
+        Key::of([format!("{VERSION} {scene} {estimator} {paths} {camera} {size:?} {seed} {goal:?}")])
     }
 }
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug)]
 pub struct Standing {
-    /// Photons so far.
+    /// Photons so far; of cells, those of all grids.
     pub photons: u64,
-    /// Estimated relMSE of a perfect image against the caustic so far; infinite before two chunks.
+    /// Estimated relMSE of a perfect image against the caustic so far; infinite while it is not known.
     pub noise: f64,
+    /// How many more photons it will take, as far as can be told.
+    pub missing: f64,
     /// The goal is met.
     pub finished: bool,
 }
@@ -78,24 +81,30 @@ pub struct Standing {
 /// A truth in the making.
 pub struct Run<'a> {
     task: &'a Task,
-    eye: Eye,
+    size: [usize; 2],
     space: &'a Space<'a>,
-    photons: Photons<'a>,
     direct: Direct,
-    caustic: Sums,
-    judged: Vec<bool>,
+    caustic: Box<dyn Estimate + 'a>,
+    judged: Judged,
     e0: f64,
 }
 
 impl<'a> Run<'a> {
-    /// Computes direct light, and sets up the photons.
+    /// Computes direct light, and sets up the estimate.
     pub fn new(space: &'a Space<'a>, camera: &Camera, task: &'a Task) -> Self {
         let eye = Eye::new(camera, task.size);
         let direct = direct(space, &eye, task.seed);
-        let judged = judged(space, &eye, &direct.mask);
-        let photons = Photons::new(space, task.paths, task.seed, task.per_chunk());
-        let caustic = Sums::new(eye.pixels());
-        Self { task, space, photons, caustic, judged, e0: bare_irradiance(space.scene), direct, eye }
+        let e0 = bare_irradiance(space.scene);
+        let judged = Judged { pixels: judged(space, &eye, &direct.mask), epsilon: (EPSILON * e0).powi(2) };
+        let caustic: Box<dyn Estimate + 'a> = match task.estimator {
+            Estimator::Photons => {
+                let photons = Photons::new(space, task.paths, task.seed, task.per_chunk());
+                Box::new(Counts::new(space, eye, photons))
+            }
+            Estimator::Cells => Box::new(Cells::new(space, eye, task.paths, &task.goal)),
+        };
+        let size = task.size.map(|n| n as usize);
+        Self { task, size, space, direct, caustic, judged, e0 }
     }
 
     /// Adds chunks, a group of `width` at a time on all cores, until the goal is met or `watch` breaks off.
@@ -103,10 +112,11 @@ impl<'a> Run<'a> {
     pub fn advance(&mut self, width: usize, mut watch: impl FnMut(&Self, Standing) -> ControlFlow<()>) -> Standing {
         let mut standing = self.standing();
         while !standing.finished {
-            let first = self.caustic.chunks;
-            let group: Vec<_> = (first..first + width.max(1) as u64).into_par_iter().map(|k| self.picture(k)).collect();
-            for picture in &group {
-                self.caustic.add(picture);
+            let first = self.caustic.chunks();
+            let chunks = first..first + width.max(1) as u64;
+            let group: Vec<_> = chunks.into_par_iter().map(|k| self.caustic.chunk(k)).collect();
+            for chunk in &group {
+                self.caustic.add(chunk);
                 standing = self.standing();
                 if standing.finished {
                     break;
@@ -121,33 +131,7 @@ impl<'a> Run<'a> {
 
     /// Where it stands.
     pub fn standing(&self) -> Standing {
-        let per_chunk = self.photons.per_chunk();
-        let noise = if per_chunk == 0 { 0.0 } else { self.caustic.noise(&self.judged, self.epsilon()) };
-        let photons = self.caustic.chunks * per_chunk;
-        let enough = self.task.goal.photons.is_some_and(|n| photons >= n);
-        let quiet = self.task.goal.noise.is_some_and(|most| self.caustic.chunks >= CHUNKS && noise <= most);
-        Standing { photons, noise, finished: per_chunk == 0 || enough || quiet }
-    }
-
-    /// The irradiance of chunk `k` alone, W/m².
-    fn picture(&self, k: u64) -> Vec<f64> {
-        let mut picture = vec![0.0; self.eye.pixels() * BANDS];
-        self.photons.chunk(k, |landing| {
-            let Some(seen) = self.eye.see(landing.surface.p) else { return };
-            let cosine = seen.towards.dot(landing.normal);
-            if cosine <= 0.0 || self.eye.hidden(self.space, &landing.surface.ray(seen.towards), seen.distance) {
-                return;
-            }
-            let e = landing.flux * (cosine * seen.density);
-            for band in 0..BANDS {
-                picture[seen.pixel * BANDS + band] += e[band];
-            }
-        });
-        picture
-    }
-
-    fn epsilon(&self) -> f64 {
-        (EPSILON * self.e0).powi(2)
+        self.caustic.standing(&self.task.goal, &self.judged)
     }
 
     /// The sums so far, to go on from.
@@ -157,8 +141,7 @@ impl<'a> Run<'a> {
 
     /// Goes on from a checkpoint of the same task; false, and nothing changes, if the bytes are of another size.
     pub fn resume(&mut self, bytes: &[u8]) -> bool {
-        let sums = Sums::from_bytes(bytes, self.eye.pixels());
-        sums.map(|sums| self.caustic = sums).is_some()
+        self.caustic.resume(bytes)
     }
 
     /// The layers: both irradiances with the variances of their pixels, and the mask.
@@ -166,12 +149,12 @@ impl<'a> Run<'a> {
     /// # Errors
     /// [`ImageError`] without pixels.
     pub fn layers(&self) -> Result<Layers, ImageError> {
-        let [width, height] = self.task.size.map(|n| n as usize);
-        let mut layers = Layers::new(width, height);
+        let mut layers = Layers::new(self.size[0], self.size[1]);
         let narrow = |numbers: &mut dyn Iterator<Item = f64>| numbers.map(|x| x as f32).collect::<Vec<_>>();
-        if self.photons.per_chunk() > 0 {
-            layers.push("irradiance.caustic", BANDS, narrow(&mut self.caustic.mean()))?;
-            layers.push("irradiance.caustic.variance", BANDS, narrow(&mut self.caustic.variance()))?;
+        // Finished before the first photon: there can be none.
+        if !self.standing().finished || self.standing().photons > 0 {
+            layers.push("irradiance.caustic", BANDS, narrow(&mut self.caustic.mean().into_iter()))?;
+            layers.push("irradiance.caustic.variance", BANDS, narrow(&mut self.caustic.variance().into_iter()))?;
         }
         layers.push("irradiance.direct", BANDS, narrow(&mut self.direct.sums.mean()))?;
         layers.push("irradiance.direct.variance", BANDS, narrow(&mut self.direct.sums.variance()))?;
@@ -189,16 +172,17 @@ impl<'a> Run<'a> {
             ("scene.name", scene.name.clone()),
             ("scene.hash", scene.source.hash.clone()),
             ("scene.resolved", scene.source.resolved.clone()),
+            ("estimator", task.estimator.to_string()),
             ("paths", task.paths.to_string()),
             ("camera", task.camera.clone()),
             ("size", size),
             ("seed", task.seed.to_string()),
             ("photons", standing.photons.to_string()),
-            ("chunks", self.caustic.chunks.to_string()),
+            ("chunks", self.caustic.chunks().to_string()),
             ("noise.relmse", format!("{:e}", standing.noise)),
             ("e0", format!("{:e}", self.e0)),
             ("finished", standing.finished.to_string()),
         ];
-        entries.into_iter().map(|(name, text)| (name.to_owned(), text)).collect()
+        entries.into_iter().chain(self.caustic.about()).map(|(name, text)| (name.to_owned(), text)).collect()
     }
 }

@@ -3,9 +3,10 @@
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
+use super::walk::Start;
 use crate::{
     scene::{LightKind, Scene, Shape},
-    truth::trace::{Ray, Space},
+    truth::trace::{Media, Ray, Space},
 };
 
 /// Rectangles and cones are wider than what they hold by this share, so that rounding cuts nothing off.
@@ -37,6 +38,8 @@ pub enum Emission {
         height: f64,
         /// Flux in it, W per band.
         flux: DVec3,
+        /// What the light is in.
+        media: Media,
     },
 }
 
@@ -49,7 +52,7 @@ impl Emission {
         }
         let light = |kind: &LightKind| match kind {
             LightKind::Directional { direction, irradiance } => rectangle(*direction, *irradiance, &held, space),
-            LightKind::Point { position, intensity } => cone(*position, *intensity, &held),
+            LightKind::Point { position, intensity } => cone(*position, *intensity, &held, space.media(*position)),
         };
         space.scene.lights.iter().map(|l| light(&l.kind)).collect()
     }
@@ -61,16 +64,19 @@ impl Emission {
         }
     }
 
-    /// The ray of a point of the unit square; equal areas of it carry equal flux.
-    pub fn ray(&self, at: DVec2) -> Ray {
+    /// The photon of a point of the unit square; equal areas of it carry equal flux.
+    pub fn start(&self, at: DVec2, flux: DVec3) -> Start {
         match self {
-            Self::Rectangle { corner, u, v, d, .. } => Ray { o: corner + at.x * u + at.y * v, d: *d, left: None },
-            Self::Cone { apex, frame: [axis, x, y], height, .. } => {
+            Self::Rectangle { corner, u, v, d, .. } => {
+                let ray = Ray { o: corner + at.x * u + at.y * v, d: *d, left: None };
+                Start { ray, flux, media: None }
+            }
+            Self::Cone { apex, frame: [axis, x, y], height, media, .. } => {
                 let below = height * at.x;
                 let across = (below * (2.0 - below)).max(0.0).sqrt();
                 let (sin, cos) = (TAU * at.y).sin_cos();
                 let d = (1.0 - below) * axis + across * (cos * x + sin * y);
-                Ray { o: *apex, d: d.normalize(), left: None }
+                Start { ray: Ray { o: *apex, d: d.normalize(), left: None }, flux, media: Some(*media) }
             }
         }
     }
@@ -131,13 +137,13 @@ fn rectangle(d: DVec3, irradiance: [f64; 3], held: &Held, space: &Space) -> Emis
     Emission::Rectangle { corner: x0 * x + y0 * y + start * d, u: (x1 - x0) * x, v: (y1 - y0) * y, d, flux }
 }
 
-fn cone(apex: DVec3, intensity: [f64; 3], held: &Held) -> Emission {
+fn cone(apex: DVec3, intensity: [f64; 3], held: &Held, media: Media) -> Emission {
     let axis = (held.middle() - apex).try_normalize();
     let cosine = axis.map_or(-1.0, |axis| held.balls.iter().map(|b| lowest_cosine(apex, axis, *b)).fold(1.0, f64::min));
     let axis = axis.unwrap_or(DVec3::Y);
     let [x, y] = across(axis);
     let height = ((1.0 - cosine) * (1.0 + MARGIN)).min(2.0);
-    Emission::Cone { apex, frame: [axis, x, y], height, flux: DVec3::from(intensity) * TAU * height }
+    Emission::Cone { apex, frame: [axis, x, y], height, flux: DVec3::from(intensity) * TAU * height, media }
 }
 
 /// Cosine of the widest angle from the axis at which a ball is seen; −1 from inside it.

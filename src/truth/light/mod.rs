@@ -11,14 +11,15 @@ mod walk;
 #[cfg(test)]
 mod tests;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 pub use chain::Chain;
+use walk::Faint;
 pub use walk::{Balance, Landing};
 
 use super::trace::Space;
 use crate::scene::PathClass;
-use emit::Emission;
+pub use emit::Emission;
 use sequence::{R2, stream};
 
 /// What a seed's numbers are for: photons.
@@ -64,13 +65,26 @@ impl<'a> Photons<'a> {
             let choices = stream(&[self.seed, CHOICES, light as u64, k]);
             let flux = emission.flux() / (*count).max(1) as f64;
             for i in 0..*count {
-                let photon = (emission.ray(points.point(i)), flux);
-                let of_one = walk::walk(self.space, self.class, photon, stream(&[choices, i]), &mut land);
+                let faint = Faint::Choose(stream(&[choices, i]));
+                let of_one =
+                    walk::walk(self.space, self.class, &emission.start(points.point(i), flux), faint, &mut land);
                 sum = sum.plus(&of_one);
             }
         }
         sum
     }
+}
+
+/// Every landing of the ray through a point of an emission's unit square, its flux a share of what was emitted. Nothing is
+/// left to chance, so that neighbouring points have neighbouring landings.
+pub fn follow(
+    space: &Space,
+    class: PathClass,
+    emission: &Emission,
+    at: DVec2,
+    mut land: impl FnMut(&Landing),
+) -> Balance {
+    walk::walk(space, class, &emission.start(at, DVec3::ONE), Faint::Drop, &mut land)
 }
 
 impl Balance {

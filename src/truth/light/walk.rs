@@ -1,24 +1,49 @@
 //! From the light to the first diffuse surface: every specular path of a class, its light split by Fresnel's shares.
 //!
 //! The first [`SPLITS`] events always go both ways, so that a class gets the same flux from a photon whether it is
-//! traced alone or among others. Later on a branch of less than [`FAINT`] of the photon goes one way, chosen with
-//! Fresnel's share as its chance, and keeps its flux: the mean is the same, the tree stays small.
+//! traced alone or among others. Later on, a branch of less than [`FAINT`] of the photon goes one way, chosen with
+//! Fresnel's share as its chance, and keeps its flux: the mean is the same, the tree stays small. Where neighbouring
+//! rays must take the same ways ([`Faint::Drop`]), branches go both ways until they carry less than [`DROPPED`].
 
 use glam::DVec3;
 
-use super::{chain::Chain, sequence::draw};
+use super::{
+    chain::Chain,
+    sequence::{draw, mix},
+};
 use crate::{
     optics::transmittance,
     scene::{MaterialKind, PathClass},
-    truth::trace::{Bend, Ray, Space, Surface, mask},
+    truth::trace::{Bend, Media, Ray, Space, Surface, mask},
 };
 
 /// Events that always split.
 const SPLITS: u32 = 2;
 /// Share of a photon's flux below which later events choose.
 const FAINT: f64 = 0.02;
-/// Media that can lie about a point at once; more are treated as if the innermost of these went on.
-const NESTED: usize = 16;
+/// Share of a photon's flux below which a branch is dropped where nothing is left to chance.
+const DROPPED: f64 = 1e-5;
+
+/// What becomes of faint branches.
+#[derive(Clone, Copy, Debug)]
+pub enum Faint {
+    /// One of the two ways, by this stream of random numbers.
+    Choose(u64),
+    /// They end, and count as light of other paths.
+    Drop,
+}
+
+/// A photon at its start.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// Where, and where to.
+    pub ray: Ray,
+    /// W per band.
+    pub flux: DVec3,
+    /// The media about a light that has a place. Light from infinity starts in whatever its first surface bounds, and
+    /// loses nothing on the way there: how far it came is not defined.
+    pub media: Option<Media>,
+}
 
 /// A photon at the first diffuse surface of its path.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +58,8 @@ pub struct Landing {
     pub flux: DVec3,
     /// What it went through.
     pub chain: Chain,
+    /// The objects that it met and how each bent it, mixed into a number: neighbours on one sheet of light share it.
+    pub path: u64,
 }
 
 /// Where a photon's flux went, W per band.
@@ -50,36 +77,6 @@ pub struct Balance {
     pub other: DVec3,
 }
 
-/// The media about a point, outermost first, by material. A material twice is one medium: where two shapes of one
-/// material touch or overlap there is no interface between them.
-#[derive(Clone, Copy, Debug, Default)]
-struct Media {
-    held: [u32; NESTED],
-    depth: usize,
-}
-
-impl Media {
-    fn innermost(&self) -> Option<usize> {
-        self.depth.checked_sub(1).map(|top| self.held[top] as usize)
-    }
-
-    fn entered(mut self, material: usize) -> Self {
-        if self.depth < NESTED {
-            self.held[self.depth] = material as u32;
-            self.depth += 1;
-        }
-        self
-    }
-
-    fn left(mut self, material: usize) -> Self {
-        if let Some(at) = self.held[..self.depth].iter().rposition(|m| *m as usize == material) {
-            self.held.copy_within(at + 1..self.depth, at);
-            self.depth -= 1;
-        }
-        self
-    }
-}
-
 #[derive(Clone, Copy)]
 struct Branch {
     ray: Ray,
@@ -87,122 +84,146 @@ struct Branch {
     /// Share of the photon's flux that Fresnel left.
     share: f64,
     chain: Chain,
+    path: u64,
     media: Media,
     /// Surfaces crossed, those without an interface too.
     crossed: u32,
 }
 
-/// Traces one photon; `random` is its own stream.
-pub fn walk(
-    space: &Space,
-    class: PathClass,
-    (ray, flux): (Ray, DVec3),
-    mut random: u64,
-    land: &mut impl FnMut(&Landing),
-) -> Balance {
-    let mut balance = Balance::default();
-    let Some(first) = space.nearest(&ray, mask::ALL) else { return balance };
-    if !space.material(&first).is_specular() {
-        return balance; // direct light
+/// Traces one photon and shows its landings to `land`.
+pub fn walk(space: &Space, class: PathClass, start: &Start, faint: Faint, land: &mut impl FnMut(&Landing)) -> Balance {
+    let (ray, flux) = (start.ray, start.flux);
+    let mut walk = Walk { space, class, faint, open: vec![], balance: Balance::default() };
+    let Some(mut surface) = space.nearest(&ray, mask::ALL) else { return walk.balance };
+    if !space.material(&surface).is_specular() {
+        return walk.balance; // direct light
     }
-    balance.emitted = flux;
-    let mut media = Media::default();
-    if first.ng.dot(ray.d) > 0.0 {
-        media = media.entered(first.material); // the light is inside
+    walk.balance.emitted = flux;
+    let mut media = start.media.unwrap_or_default();
+    if surface.ng.dot(ray.d) > 0.0 && !media.holds(surface.material) {
+        media = media.entered(surface.material); // from infinity, or through a hole
     }
-    let mut open = vec![Branch { ray, flux, share: 1.0, chain: Chain::default(), media, crossed: 0 }];
-    while let Some(mut branch) = open.pop() {
-        let Some(surface) = space.nearest(&branch.ray, mask::ALL) else {
-            balance.missed += branch.flux;
-            continue;
+    let mut branch = Branch { ray, flux, share: 1.0, chain: Chain::default(), path: 0, media, crossed: 0 };
+    if start.media.is_some() {
+        walk.travel(&mut branch, surface.distance);
+    }
+    walk.meet(&branch, &surface);
+    while let Some(next) = walk.open.pop() {
+        branch = next;
+        surface = match space.nearest(&branch.ray, mask::ALL) {
+            Some(surface) => surface,
+            None => {
+                walk.balance.missed += branch.flux;
+                continue;
+            }
         };
-        travel(space, &mut branch, surface.distance, &mut balance);
+        walk.travel(&mut branch, surface.distance);
         if space.material(&surface).is_specular() {
-            meet(space, class, &branch, &surface, &mut random, &mut open, &mut balance);
+            walk.meet(&branch, &surface);
         } else if branch.chain.is_of(class) {
-            let (d, chain, flux) = (branch.ray.d, branch.chain, branch.flux);
-            balance.landed += flux;
-            land(&Landing { surface, normal: surface.facing(d), d, flux, chain });
+            let Branch { ray: Ray { d, .. }, chain, path, flux, .. } = branch;
+            walk.balance.landed += flux;
+            land(&Landing { surface, normal: surface.facing(d), d, flux, chain, path });
         } else {
-            balance.other += branch.flux;
+            walk.balance.other += branch.flux;
         }
     }
-    balance
+    walk.balance
 }
 
-/// A way through the medium that the branch is in. Light that scatters on the way would leave the branch here.
-fn travel(space: &Space, branch: &mut Branch, metres: f64, balance: &mut Balance) {
-    let Some(medium) = branch.media.innermost() else { return };
-    let MaterialKind::Dielectric { absorption, .. } = space.scene.materials[medium].kind else { return };
-    let left = branch.flux * DVec3::from(absorption.map(|a| transmittance(a, metres)));
-    balance.absorbed += branch.flux - left;
-    branch.flux = left;
-}
-
-/// One specular surface: pushes the branches that go on.
-fn meet(
-    space: &Space,
+/// A photon under way.
+struct Walk<'a> {
+    space: &'a Space<'a>,
     class: PathClass,
-    branch: &Branch,
-    surface: &Surface,
-    random: &mut u64,
-    open: &mut Vec<Branch>,
-    balance: &mut Balance,
-) {
-    let d = branch.ray.d;
-    if branch.crossed >= 4 * PathClass::LONGEST {
-        balance.other += branch.flux; // caught between surfaces of one place
-        return;
+    faint: Faint,
+    open: Vec<Branch>,
+    balance: Balance,
+}
+
+impl Walk<'_> {
+    /// A way through the medium that the branch is in. Light that scatters on the way would leave the branch here.
+    fn travel(&mut self, branch: &mut Branch, metres: f64) {
+        let Some(medium) = branch.media.innermost() else { return };
+        let MaterialKind::Dielectric { absorption, .. } = self.space.scene.materials[medium].kind else { return };
+        let left = branch.flux * DVec3::from(absorption.map(|a| transmittance(a, metres)));
+        self.balance.absorbed += branch.flux - left;
+        branch.flux = left;
     }
-    let after = match space.material(surface).kind {
-        MaterialKind::Dielectric { .. } if d.dot(surface.ng) < 0.0 => branch.media.entered(surface.material),
-        _ => branch.media.left(surface.material),
-    };
-    let go = |bend: Bend, transmission: bool, flux: DVec3, share: f64| Branch {
-        ray: surface.ray(bend.d),
-        flux,
-        share,
-        chain: branch.chain.then(transmission),
-        media: if transmission { after } else { branch.media },
-        crossed: branch.crossed + 1,
-    };
-    if let MaterialKind::Mirror { reflectance } = space.material(surface).kind {
-        let flux = branch.flux * DVec3::from(reflectance);
-        balance.absorbed += branch.flux - flux;
-        push(class, go(surface.reflect(d, 1.0, 1.0), false, flux, branch.share), open, balance);
-        return;
+
+    /// One specular surface: pushes the branches that go on.
+    fn meet(&mut self, branch: &Branch, surface: &Surface) {
+        let d = branch.ray.d;
+        if branch.crossed >= 4 * PathClass::LONGEST {
+            self.balance.other += branch.flux; // caught between surfaces of one place
+            return;
+        }
+        let after = match self.space.material(surface).kind {
+            MaterialKind::Dielectric { .. } if d.dot(surface.ng) < 0.0 => branch.media.entered(surface.material),
+            _ => branch.media.left(surface.material),
+        };
+        if let MaterialKind::Mirror { reflectance } = self.space.material(surface).kind {
+            let flux = branch.flux * DVec3::from(reflectance);
+            self.balance.absorbed += branch.flux - flux;
+            self.push(branch.bent(surface, surface.reflect(d, 1.0, 1.0), false, branch.media, flux, branch.share));
+            return;
+        }
+        if after.innermost() == branch.media.innermost() {
+            let (media, crossed) = (after, branch.crossed + 1);
+            self.open.push(Branch { ray: surface.ray(d), media, crossed, ..*branch }); // no interface
+            return;
+        }
+        self.split(branch, surface, after);
     }
-    if after.innermost() == branch.media.innermost() {
-        let (media, crossed) = (after, branch.crossed + 1);
-        open.push(Branch { ray: surface.ray(d), media, crossed, ..*branch }); // no interface
-        return;
-    }
-    let (from, to) = (index(space, branch.media), index(space, after));
-    let through = surface.transmit(d, from, to);
-    let back = surface.reflect(d, from, to);
-    // The two are bent by one normal or, rarely, by two: what passes decides, the rest goes back.
-    let passes = through.map_or(0.0, |t| t.share);
-    let both = branch.chain.len() < SPLITS || branch.share >= FAINT || !matches!(class, PathClass::All(_));
-    let chosen = if both { None } else { Some(draw(random) < passes) };
-    let weigh = |share: f64, is: bool| chosen.map_or(share, |c| f64::from(u8::from(c == is)));
-    if let Some(bend) = through.filter(|_| weigh(passes, true) > 0.0) {
+
+    /// An interface: Fresnel's shares go on, or by chance one of them.
+    fn split(&mut self, branch: &Branch, surface: &Surface, after: Media) {
+        let d = branch.ray.d;
+        let (from, to) = (index(self.space, branch.media), index(self.space, after));
+        let through = surface.transmit(d, from, to);
+        let back = surface.reflect(d, from, to);
+        // The two are bent by one normal or, rarely, by two: what passes decides, the rest goes back.
+        let passes = through.map_or(0.0, |t| t.share);
+        let both = branch.chain.len() < SPLITS || branch.share >= FAINT || !matches!(self.class, PathClass::All(_));
+        let chosen = match &mut self.faint {
+            Faint::Choose(random) if !both => Some(draw(random) < passes),
+            _ => None,
+        };
+        let weigh = |share: f64, is: bool| chosen.map_or(share, |c| f64::from(u8::from(c == is)));
         let w = weigh(passes, true);
-        push(class, go(bend, true, branch.flux * w, branch.share * w), open, balance);
+        if let Some(bend) = through.filter(|_| w > 0.0) {
+            self.push(branch.bent(surface, bend, true, after, branch.flux * w, branch.share * w));
+        }
+        let w = weigh(1.0 - passes, false);
+        if w > 0.0 {
+            self.push(branch.bent(surface, back, false, branch.media, branch.flux * w, branch.share * w));
+        }
     }
-    let w = weigh(1.0 - passes, false);
-    if w > 0.0 {
-        push(class, go(back, false, branch.flux * w, branch.share * w), open, balance);
+
+    fn push(&mut self, branch: Branch) {
+        if branch.flux == DVec3::ZERO {
+            return;
+        }
+        let dropped = matches!(self.faint, Faint::Drop) && branch.share < DROPPED;
+        if branch.chain.begins(self.class) && !dropped {
+            self.open.push(branch);
+        } else {
+            self.balance.other += branch.flux;
+        }
     }
 }
 
-fn push(class: PathClass, branch: Branch, open: &mut Vec<Branch>, balance: &mut Balance) {
-    if branch.flux == DVec3::ZERO {
-        return;
-    }
-    if branch.chain.begins(class) {
-        open.push(branch);
-    } else {
-        balance.other += branch.flux;
+impl Branch {
+    /// What goes on after one more event, with this flux and share.
+    fn bent(&self, at: &Surface, bend: Bend, transmission: bool, media: Media, flux: DVec3, share: f64) -> Self {
+        Self {
+            ray: at.ray(bend.d),
+            flux,
+            share,
+            chain: self.chain.then(transmission),
+            path: mix(self.path ^ (2 * at.object as u64 + u64::from(transmission))),
+            media,
+            crossed: self.crossed + 1,
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 
 mod bvh;
 mod interface;
+mod media;
 mod shape;
 
 #[cfg(test)]
@@ -16,6 +17,7 @@ use glam::DVec3;
 
 use crate::scene::{Material, Object, Scene, Shape};
 pub use interface::Bend;
+pub use media::Media;
 pub use shape::Ray;
 use shape::{Meeting, Primitive};
 

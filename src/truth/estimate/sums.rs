@@ -1,4 +1,4 @@
-//! Sums over chunks, pixel by pixel: the mean and its variance, and the noise they leave in the judged figure.
+//! Sums over chunks, pixel by pixel: the mean and its variance.
 
 /// Bands of each pixel.
 pub const BANDS: usize = 3;
@@ -42,16 +42,6 @@ impl Sums {
         self.sum.iter().zip(&self.squares).map(move |(s, q)| if known { one(*s, *q) } else { f64::INFINITY })
     }
 
-    /// What a perfect image would score in relMSE against this: the mean of σ²/(x² + ε) over the pixels `judged`.
-    pub fn noise(&self, judged: &[bool], epsilon: f64) -> f64 {
-        let at = self.mean().zip(self.variance()).enumerate().filter(|(k, _)| judged[k / BANDS]);
-        let (sum, count) = at.fold((0.0, 0u64), |(sum, count), (_, (x, variance))| {
-            let one = if variance == 0.0 { 0.0 } else { variance / (x * x + epsilon) };
-            (sum + one, count + 1)
-        });
-        if count == 0 { 0.0 } else { sum / count as f64 }
-    }
-
     /// As bytes, little-endian: the count, the sums, the sums of squares.
     pub fn to_bytes(&self) -> Vec<u8> {
         let numbers = self.sum.iter().chain(&self.squares).flat_map(|x| x.to_le_bytes());
@@ -74,6 +64,7 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::truth::estimate::Judged;
 
     #[test]
     fn mean_and_variance_by_hand() {
@@ -83,16 +74,16 @@ mod tests {
         // Sample variances 4, 3, 0, each over 3 chunks.
         let variance: Vec<_> = sums.variance().collect();
         assert!((variance[0] - 4.0 / 3.0).abs() < 1e-15 && (variance[1] - 1.0).abs() < 1e-15 && variance[2] == 0.0);
-        let noise = (4.0 / 3.0 / 10.0 + 1.0 / 2.0) / 3.0;
-        assert!((sums.noise(&[true], 1.0) - noise).abs() < 1e-15);
-        assert_eq!(sums.noise(&[false], 1.0), 0.0);
+        let noise = |judged| Judged { pixels: vec![judged], epsilon: 1.0 }.noise(sums.mean(), sums.variance());
+        assert!((noise(true) - (4.0 / 3.0 / 10.0 + 1.0 / 2.0) / 3.0).abs() < 1e-15);
+        assert_eq!(noise(false), 0.0);
     }
 
     #[test]
     fn one_chunk_says_nothing_of_its_noise() {
         let mut sums = Sums::new(1);
         sums.add(&[1.0; 3]);
-        assert_eq!(sums.noise(&[true], 1.0), f64::INFINITY);
+        assert!(sums.variance().all(|v| v == f64::INFINITY));
     }
 
     #[test]
