@@ -107,6 +107,11 @@ impl Job {
             known: self.scene.cameras.keys().cloned().collect::<Vec<_>>().join(", "),
         })
     }
+
+    /// Samples a pixel along each axis: the value in force of `eye.samples`.
+    pub fn eye_samples(&self) -> u32 {
+        eye::samples(&self.settings, &self.camera, self.size)
+    }
 }
 
 /// Every setting of every room, sorted as they are listed.

@@ -103,7 +103,8 @@ fn options_of(group: &str, job: &Job) -> String {
     };
     if group == "eye" {
         let [width, height] = job.size;
-        return format!("--size (now {width}x{height}) or {}", now(eye::SAMPLES.key).unwrap_or_default());
+        let (key, samples) = (eye::SAMPLES.key, job.eye_samples());
+        return format!("--size (now {width}x{height}) or --set {key} (now {samples})");
     }
     now(&format!("{group}.side")).unwrap_or_else(|| "the number of triangles in the scene".to_owned())
 }

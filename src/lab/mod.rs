@@ -3,12 +3,15 @@
 
 mod catalogue;
 mod compare;
+mod compare_error;
 mod compare_maps;
 mod compare_report;
 mod compare_scene;
+mod compare_warnings;
 mod devices;
 mod experiment;
 mod files;
+mod picture;
 mod plan_report;
 mod provenance;
 mod render_report;
@@ -16,12 +19,14 @@ mod report;
 mod table;
 
 pub use catalogue::{MethodsReport, ScenesReport};
-pub use compare::{CompareError, Comparison, Constants, MEASURES, Picture, compare};
+pub use compare::{Comparison, Constants, MEASURES, compare};
+pub use compare_error::CompareError;
 pub use compare_maps::error_maps;
 pub use compare_report::{CompareReport, Limit};
 pub use devices::{DeviceRow, DevicesReport};
 pub use experiment::{Experiment, LabError, Measured, Step};
 pub use files::{dump_file, write_dump, write_outputs};
+pub use picture::Picture;
 pub use plan_report::PlanReport;
 pub use provenance::{Provenance, Run, exposure};
 pub use render_report::RenderReport;

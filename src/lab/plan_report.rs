@@ -1,8 +1,9 @@
 //! `nephroid.plan/1`: what a frame runs and holds, and what it leaves out.
 
 use serde::Serialize;
+use serde_json::{Map, Value};
 
-use super::{Cell, Report, Table, render_report::method_name};
+use super::{Cell, Report, Table, provenance::in_force, render_report::method_name};
 use crate::{
     gpu::{BufferDecl, ImageDecl, Lifetime, PassDecl, Phase, Plan, Work},
     renderer::Job,
@@ -16,6 +17,11 @@ pub struct PlanReport {
     method: String,
     camera: String,
     size: [u32; 2],
+    /// Every setting with the value in force.
+    settings: Map<String, Value>,
+    /// Along each axis of a pixel.
+    #[serde(skip)]
+    samples: u32,
     passes: Vec<PassRow>,
     resources: Vec<ResourceRow>,
     left_out: Vec<LeftOutRow>,
@@ -68,6 +74,8 @@ impl PlanReport {
             method: method_name(&job.providers),
             camera: job.camera.clone(),
             size: job.size,
+            settings: in_force(job),
+            samples: job.eye_samples(),
             passes: phases.into_iter().flat_map(of_phase).map(|p| PassRow::new(plan, p)).collect(),
             resources: images.chain(plan.buffers.iter().map(ResourceRow::of_buffer)).collect(),
             left_out: left_out.collect(),
@@ -158,7 +166,8 @@ fn lifetime(lifetime: Lifetime) -> &'static str {
 impl Report for PlanReport {
     fn heading(&self) -> Vec<String> {
         let [width, height] = self.size;
-        vec![format!("{}, method {}, camera {}, {width}x{height} pixels", self.scene, self.method, self.camera)]
+        let (scene, method, camera, k) = (&self.scene, &self.method, &self.camera, self.samples);
+        vec![format!("{scene}, method {method}, camera {camera}, {width}x{height} pixels of {k}x{k} samples")]
     }
 
     fn tables(&self) -> Vec<Table> {

@@ -81,7 +81,7 @@ impl Provenance {
             scene: SceneSource::new(&job.scene),
             camera: job.camera.clone(),
             size: job.size,
-            settings: in_force(&job.settings, &job.scene),
+            settings: in_force(job),
             e0: bare_irradiance(&job.scene),
             time_s: frame.time,
             seed: frame.seed,
@@ -127,9 +127,11 @@ pub fn exposure(settings: &Settings, scene: &Scene) -> f64 {
     settings.real(&eye::EXPOSURE).unwrap_or(scene.exposure)
 }
 
-/// Values as numbers where they are numbers; what the scene decides, as it decided.
-fn in_force(settings: &Settings, scene: &Scene) -> Map<String, Value> {
+/// Every setting: values as numbers where they are numbers; what the scene or the camera decides, as it decided.
+pub(super) fn in_force(job: &Job) -> Map<String, Value> {
+    let (settings, scene) = (&job.settings, &job.scene);
     let value = |setting: Setting| match setting {
+        Setting::Whole(s) if s.key == eye::SAMPLES.key => job.eye_samples().into(),
         Setting::Whole(s) => settings.whole(s).into(),
         Setting::Real(s) if s.key == eye::EXPOSURE.key => exposure(settings, scene).into(),
         Setting::Real(s) => settings.real(s).into(),

@@ -82,7 +82,11 @@ fn measure(pictures: &Pictures, value: f64, truth_noise: Option<f64>) -> Measure
     let finite = |plane: &[[f32; 3]]| {
         plane.iter().zip(pictures.judged).all(|(pixel, judged)| !judged || pixel.iter().all(|v| v.is_finite()))
     };
-    if ![Some(pictures.image), Some(pictures.reference), pictures.variance].into_iter().flatten().all(finite) {
+    // A variance below zero is none.
+    let sound = |plane: &[[f32; 3]]| {
+        finite(plane) && plane.iter().zip(pictures.judged).all(|(v, judged)| !judged || v.iter().all(|v| *v >= 0.0))
+    };
+    if !finite(pictures.image) || !finite(pictures.reference) || !pictures.variance.is_none_or(sound) {
         return Measure::infinite(0.0, truth_noise.is_some());
     }
     let low = truth_noise.map(|noise| (value - noise).max(0.0));

@@ -16,14 +16,31 @@ use crate::{
     view::{Extent, View, ViewData},
 };
 
-/// Samples a pixel along each axis.
+/// Samples a pixel along each axis, as it is set; [`samples`] says what is in force.
 pub static SAMPLES: Whole = Whole {
     key: "eye.samples",
     unit: "samples",
-    default: 1,
-    range: 1..=16,
-    doc: "k for k x k eye samples a pixel, box-filtered",
+    default: 0,
+    range: 0..=16,
+    doc: "k for k x k eye samples a pixel, box-filtered; 0: 1, and through `region` as many as make 1024 across, at most 8",
 };
+
+/// The camera whose pictures are judged: the truth is box-filtered, and so are they unless told otherwise.
+const JUDGED: &str = "region";
+/// Samples across a judged picture's larger side, at least, up to [`MOST`] a pixel.
+const ACROSS: u32 = 1024;
+/// The most samples along an axis that are taken unasked.
+const MOST: u32 = 8;
+
+/// Samples a pixel along each axis: as set, else as the camera needs. One at the middle of each pixel would give a
+/// picture a floor of error that is no fault of the method's.
+pub fn samples(settings: &Settings, camera: &str, [width, height]: [u32; 2]) -> u32 {
+    match settings.whole(&SAMPLES) {
+        0 if camera == JUDGED => ACROSS.div_ceil(width.max(height).max(1)).clamp(1, MOST),
+        0 => 1,
+        set => set,
+    }
+}
 
 /// Depth of the Fresnel tree.
 pub static DEPTH: Whole = Whole {
@@ -140,6 +157,8 @@ pub struct EyeScene<'a> {
     pub camera: &'a Camera,
     /// Pixels.
     pub size: [u32; 2],
+    /// Samples a pixel along each axis (see [`samples`]).
+    pub samples: u32,
 }
 
 /// Adds the eye's passes.
@@ -149,10 +168,9 @@ pub fn passes(
     settings: &Settings,
     surface: Option<&SurfaceProvider>,
 ) -> EyeLayers {
-    let samples = settings.whole(&SAMPLES);
     let image = |plan: &mut Plan, name: &str| plan.image(name, from.size, Format::Rgba32f, Lifetime::Frame);
-    let gbuffer = gbuffer(plan, from, samples);
-    let push = EyePush { size: from.size.map(|s| s as i32), samples: samples as i32 };
+    let gbuffer = gbuffer(plan, from);
+    let push = EyePush { size: from.size.map(|s| s as i32), samples: from.samples as i32 };
     let mut eye = Eye { plan, buffers: from.buffers, frame: from.frame, gbuffer, push, size: from.size };
     let (irradiance_direct, direct) = eye.direct(from.scene.lights.len());
     let (irradiance_caustic, caustic) = match surface {
@@ -185,8 +203,8 @@ pub fn passes(
 }
 
 /// Push constants of `glsl/eye/gbuffer.frag`.
-fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>, samples: u32) -> ImageId {
-    let extent = from.size.map(|s| s.saturating_mul(samples));
+fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>) -> ImageId {
+    let extent = from.size.map(|s| s.saturating_mul(from.samples));
     let seen = plan.image("eye/gbuffer", extent, Format::Rgba32u, Lifetime::Frame);
     let depth = plan.image("eye/depth", extent, Format::Depth32f, Lifetime::Frame);
     let draws = visible_draws(from.scene, from.camera, from.arrays);
@@ -263,5 +281,22 @@ impl Eye<'_> {
             pass = pass.define("CAUSTIC", 1).target(caustic, 0, None, Blend::Add);
         }
         pass.screen("eye/trace.frag");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn judged_pictures_have_about_as_many_samples_across_unless_told() {
+        let of = |camera: &str, size: [u32; 2]| samples(&Settings::default(), camera, size);
+        let sides = [1, 64, 128, 129, 256, 500, 512, 1023, 1024, 4096];
+        assert_eq!(sides.map(|side| of("region", [1, side])), [8, 8, 8, 8, 4, 3, 2, 2, 1, 1]);
+        assert_eq!(of("region", [512, 1]), 2);
+        assert_eq!(sides.map(|side| of("main", [side, side])), [1; 10]);
+        let mut set = Settings::default();
+        set.set(SETTINGS, "eye.samples", "3").unwrap();
+        assert_eq!(["region", "main"].map(|camera| samples(&set, camera, [64, 64])), [3, 3]);
     }
 }

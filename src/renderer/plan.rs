@@ -74,7 +74,8 @@ pub fn plan(job: &Job) -> Result<Planned, RenderError> {
     let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let frame = plan.buffer("frame", size_of::<FrameData>() as u64, Lifetime::Frame);
     let photons = photon_passes(&mut plan, job, &buffers, &everything)?;
-    let from = EyeScene { scene, arrays: &arrays, buffers: &buffers, frame, camera, size: job.size };
+    let samples = job.eye_samples();
+    let from = EyeScene { scene, arrays: &arrays, buffers: &buffers, frame, camera, size: job.size, samples };
     let provided = photons.provided.as_ref().and_then(|p| p.surface.as_ref());
     let layers = eye::passes(&mut plan, &from, settings, provided);
     Ok(Planned {

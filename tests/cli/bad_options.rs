@@ -15,7 +15,7 @@ const CASES: &[(&str, i32, &[&str])] = &[
     ("glass-sphere --set =3", USAGE, &["=3", "KEY=VALUE"]),
     ("glass-sphere --set light.view=wide", USAGE, &["light.view=wide", "fitted | shared"]),
     ("glass-sphere --set eye.exposure=NaN", USAGE, &["eye.exposure=NaN", "-30 to 30 EV"]),
-    ("glass-sphere --set eye.samples=17", USAGE, &["eye.samples=17", "1 to 16"]),
+    ("glass-sphere --set eye.samples=17", USAGE, &["eye.samples=17", "0 to 16"]),
     ("glass-sphere --size 640", USAGE, &["640", "--size", "WIDTHxHEIGHT"]),
     ("glass-sphere --size 0x480", USAGE, &["0x480", "each from 1"]),
     ("glass-sphere --size 640x480x3", USAGE, &["640x480x3", "WIDTHxHEIGHT"]),

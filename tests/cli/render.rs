@@ -207,12 +207,30 @@ fn an_image_of_several_layers_is_dumped_as_several_files() {
 
 #[test]
 fn cameras_sizes_and_samples_are_taken() {
-    for (options, size) in [("--camera region --size 1x1", [1, 1]), ("--size 3x200 --set eye.samples=3", [3, 200])] {
+    for (options, size, samples) in [
+        ("--camera region --size 1x1", [1, 1], 8),
+        ("--camera region --size 1x400 --set eye.samples=0", [1, 400], 3),
+        ("--camera region --size 2x2 --set eye.samples=1", [2, 2], 1),
+        ("--size 2x2", [2, 2], 1),
+        ("--size 3x200 --set eye.samples=3", [3, 200], 3),
+    ] {
         let (_folder, out) = place();
         nephroid(&format!("render glass-sphere {SMALL_LIGHT} {options} --out {}", out.display())).ok();
-        let (layers, _) = exr(&out.join("image.exr"));
+        let (layers, about) = exr(&out.join("image.exr"));
         assert_eq!([layers.width(), layers.height()], size);
-        assert_eq!(result(&out)["nonfinite_pixels"], 0);
+        let result = result(&out);
+        assert_eq!(result["nonfinite_pixels"], 0);
+        // Never "as the camera needs": what that came to.
+        assert_eq!(
+            [&result["settings"]["eye.samples"], &result["provenance"]["settings"]["eye.samples"]],
+            [samples; 2]
+        );
+        assert_eq!(about["settings.eye.samples"], samples.to_string());
+        let plan = nephroid(&format!("plan glass-sphere {options} --format json")).ok().json();
+        assert_eq!(plan["settings"]["eye.samples"], samples);
+        let (words, table) =
+            (format!("{samples}x{samples} samples"), nephroid(&format!("plan glass-sphere {options}")));
+        assert!(table.out.contains(&words), "{}", table.out);
     }
 }
 

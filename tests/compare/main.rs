@@ -1,4 +1,7 @@
-//! `nephroid compare` as a user runs it, on pictures made here: figures, formats, thresholds, maps, malformed files.
+//! `nephroid compare` as a user runs it: on pictures made here, figures, formats, thresholds, maps; in its rooms
+//! malformed files.
+
+mod malformed;
 
 use std::{path::Path, process::Command};
 
@@ -167,18 +170,6 @@ fn thresholds_decide_the_exit_code() {
     assert!(ran.err.contains("rmse") && ran.err.contains("i.exr") && !ran.out.is_empty(), "{}", ran.err);
 }
 
-/// A value that is no number exceeds any limit, and its JSON is no number that could pass for a small one.
-#[test]
-fn nan_fails() {
-    let folder = folder();
-    let (image, reference) = (Picture::of(f32::NAN).write(&folder, "i.exr"), Picture::of(1.0).write(&folder, "r.exr"));
-    let ran = compare(&[&image, "--reference", &reference, "--format", "json", "--fail-above", "relmse=1e300"]);
-    assert_eq!(ran.code, Some(3));
-    for name in nephroid::lab::MEASURES {
-        assert_eq!(ran.json()["results"][0]["measures"][name]["value"], "infinity", "{name}");
-    }
-}
-
 /// The union of both masks is left out and counted; more than 5 % of it is refused.
 #[test]
 fn masks_are_joined() {
@@ -217,28 +208,6 @@ fn decode(path: &Path) -> ([u32; 2], [u8; 3]) {
     ([info.width, info.height], [pixels[0], pixels[1], pixels[2]])
 }
 
-#[test]
-fn malformed_files_are_named() {
-    let folder = folder();
-    let good = Picture::of(1.0).write(&folder, "good.exr");
-    let place = |name: &str| folder.path().join(name).display().to_string();
-    let bytes = std::fs::read(&good).expect("reads");
-    std::fs::write(place("cut.exr"), &bytes[..bytes.len() / 2]).expect("writes");
-    std::fs::write(place("foreign.exr"), b"not an image at all").expect("writes");
-    fails(&[&place("cut.exr"), "--reference", &good], &["cut.exr"]);
-    fails(&[&good, "--reference", &place("foreign.exr")], &["foreign.exr", "EXR"]);
-    fails(&[&place("absent.exr"), "--reference", &good], &["absent.exr", "cannot read"]);
-    let small = Picture { side: 19, ..Picture::of(1.0) }.write(&folder, "small.exr");
-    fails(&[&small, "--reference", &good], &["small.exr", "19x19", "good.exr", "20x20"]);
-    fails(&[&good, "--reference", &good, "--layer", "medium"], &["good.exr", "`medium`", "irradiance.caustic, mask"]);
-    let main = Picture::of(1.0).about("camera", "main").write(&folder, "main.exr");
-    fails(&[&main, "--reference", &good], &["main.exr", "--camera region"]);
-    let dark = Picture::of(1.0).about("e0", "none").write(&folder, "dark.exr");
-    fails(&[&dark, "--reference", &dark], &["nephroid.e0"]);
-    let thin = write_plain(&place("thin.exr"), 1);
-    fails(&[&good, "--reference", &thin], &["thin.exr", "1 channels", "3 are needed"]);
-}
-
 /// A file that says nothing of itself, as another renderer's.
 fn write_plain(place: &str, channels: usize) -> String {
     let mut layers = Layers::new(SIDE, SIDE);
@@ -255,40 +224,6 @@ fn a_reference_of_another_renderer_is_taken_as_it_is() {
     let ran = compare(&[&image, "--reference", &foreign, "--format", "json"]);
     assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
     assert_eq!(ran.json()["results"][0]["measures"]["flip"]["truth_noise"], Value::Null);
-}
-
-/// A truth too short to know its noise: the figures stand, their noise does not.
-#[test]
-fn a_reference_of_infinite_noise_is_compared_without_it() {
-    let folder = folder();
-    let image = Picture::of(1.1).write(&folder, "i.exr");
-    let reference = Picture { variance: Some(f32::INFINITY), ..Picture::of(1.0) }.write(&folder, "r.exr");
-    let ran = compare(&[&image, "--reference", &reference, "--format", "json"]);
-    assert_eq!(ran.code, Some(0));
-    assert!(ran.err.contains("its noise is infinite"), "{}", ran.err);
-    let relmse = &ran.json()["results"][0]["measures"]["relmse"];
-    assert!(relmse["value"].as_f64().is_some() && relmse["truth_noise"].is_null(), "{relmse}");
-}
-
-/// The warning names the value that changed; figures are given all the same.
-#[test]
-fn a_changed_scene_is_a_warning() {
-    let folder = folder();
-    let reference = Picture::of(1.0).write(&folder, "r.exr");
-    let changed = Picture::of(1.0).about("scene.hash", "b").about("scene.resolved", &RESOLVED.replace("1.5", "1.33"));
-    let mesh = Picture::of(1.0).about("scene.hash", "c");
-    let paths = Picture::of(1.0).about("settings.light.paths", "reflect-1");
-    for (picture, words) in [
-        (changed, "materials.glass.dielectric.ior is 1.5 there, 1.33 here"),
-        (mesh, "a mesh file has changed"),
-        (paths, "its paths are reflect-1"),
-    ] {
-        let image = picture.write(&folder, "i.exr");
-        let ran = compare(&[&image, "--reference", &reference, "--format", "json"]);
-        assert_eq!(ran.code, Some(0), "{}", ran.err);
-        assert!(ran.err.contains("warning") && ran.err.contains(words), "{}", ran.err);
-        assert!(ran.json()["warnings"][0].as_str().is_some_and(|w| w.contains(words)));
-    }
 }
 
 /// What `render` writes says how bright its region is, and is no different from itself.
