@@ -15,6 +15,7 @@ mod class;
 mod error;
 mod file;
 mod format;
+mod light;
 mod load;
 mod locate;
 mod measure;
@@ -28,6 +29,7 @@ mod shipped;
 
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
+pub use light::{Beam, Light, LightKind};
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.
 #[derive(Clone, Debug)]
@@ -200,34 +202,6 @@ impl Material {
     pub fn is_specular(&self) -> bool {
         !matches!(self.kind, MaterialKind::Diffuse { .. })
     }
-}
-
-/// A source without size.
-#[derive(Clone, Debug)]
-pub struct Light {
-    /// As in the file.
-    pub name: String,
-    /// Where its light comes from.
-    pub kind: LightKind,
-}
-
-/// Colours are one number for each of the three bands.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightKind {
-    /// Parallel light.
-    Directional {
-        /// Unit vector along which the light travels.
-        direction: DVec3,
-        /// W/m² on a plane that faces the light.
-        irradiance: [f64; 3],
-    },
-    /// The same in every direction.
-    Point {
-        /// m
-        position: DVec3,
-        /// W/sr
-        intensity: [f64; 3],
-    },
 }
 
 /// Looks along its own −Z, from `position` to `target`; `up` need not be perpendicular.
