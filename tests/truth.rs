@@ -27,8 +27,12 @@ fn scene(name: &str, set: &[(&str, &str)]) -> Scene {
 }
 
 fn task(paths: PathClass, size: [u32; 2], seed: u64, photons: u64) -> Task {
+    of(Estimator::Photons, paths, size, seed, photons)
+}
+
+fn of(estimator: Estimator, paths: PathClass, size: [u32; 2], seed: u64, photons: u64) -> Task {
     let goal = Goal { photons: Some(photons), noise: None };
-    Task { estimator: Estimator::Photons, paths, camera: "region".to_owned(), size, seed, goal }
+    Task { estimator, paths, camera: "region".to_owned(), size, seed, goal }
 }
 
 /// Runs a task to its end, `width` chunks at a time.
@@ -135,34 +139,86 @@ fn index_one_vanishes_within_its_noise() {
     assert!(chi < 1.5, "{chi}");
 }
 
+/// Flat water bends all rays alike, so cells land as squares: what is off is rounding.
+const WATER_CELLS: f64 = 1e-9;
+
+#[test]
+fn flat_water_by_cells_is_even_to_rounding() {
+    let scene = scene("flat-water", &[]);
+    let all = layers(&scene, &of(Estimator::Cells, PathClass::Transmit1, [8, 8], 0, 32 * 32), 2);
+    let exact = flat_water(1.33, 1.0, 1.0, 0.0, 1.0);
+    let float = f64::from(f32::EPSILON);
+    for (pixel, e) in layer(&all, "irradiance.caustic").iter().enumerate() {
+        let off = f64::from(*e) / exact - 1.0;
+        assert!(off.abs() < WATER_CELLS + float, "{pixel}: {off:e}");
+    }
+    assert!(layer(&all, "irradiance.caustic.variance").iter().all(|v| *v < 1e-18));
+}
+
+/// Both estimators, with what makes a run of about a hundred chunks.
+const BOTH: [(Estimator, u64); 2] = [(Estimator::Photons, 70_000), (Estimator::Cells, 64 * 64)];
+
 #[test]
 fn the_same_bits_for_any_grouping_and_any_number_of_threads() {
     let scene = scene("glass-sphere", &[]);
-    let task = task(PathClass::All(4), [16, 16], 3, 70_000);
-    let one = layers(&scene, &task, 1);
-    assert_eq!(one, layers(&scene, &task, 7));
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    assert_eq!(one, alone.install(|| layers(&scene, &task, 4)));
-    let other = Task { seed: 4, ..task };
-    assert_ne!(one, layers(&scene, &other, 1));
+    for (estimator, photons) in BOTH {
+        let task = of(estimator, PathClass::All(4), [16, 16], 3, photons);
+        let one = layers(&scene, &task, 1);
+        assert_eq!(one, layers(&scene, &task, 7));
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        assert_eq!(one, alone.install(|| layers(&scene, &task, 4)));
+    }
+    let with = |seed| task(PathClass::All(4), [16, 16], seed, 70_000);
+    assert_ne!(layers(&scene, &with(3), 1), layers(&scene, &with(4), 1));
 }
 
 #[test]
 fn a_run_that_was_resumed_has_the_same_bits() {
     let scene = scene("glass-sphere", &[]);
-    let task = task(PathClass::Transmit2, [16, 16], 3, 70_000);
-    let space = Space::new(&scene);
-    let new = || Run::new(&space, &scene.cameras["region"], &task);
-    let mut first = new();
-    let mut groups = 0;
-    first.advance(3, |_, _| {
-        groups += 1;
-        if groups == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    let mut second = new();
-    assert!(!second.resume(&first.checkpoint()[1..]) && second.resume(&first.checkpoint()));
-    assert!(second.advance(2, |_, _| ControlFlow::Continue(())).finished);
-    assert_eq!(second.layers().unwrap(), layers(&scene, &task, 4));
+    for (estimator, photons) in BOTH {
+        let task = of(estimator, PathClass::Transmit2, [16, 16], 3, photons);
+        let space = Space::new(&scene);
+        let new = || Run::new(&space, &scene.cameras["region"], &task);
+        // After 15 chunks, and after 75: in the first stage of cells, and in the second.
+        for stop in [5, 25] {
+            let mut first = new();
+            let mut groups = 0;
+            let standing = first.advance(3, |_, _| {
+                groups += 1;
+                if groups == stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            assert!(!standing.finished || estimator == Estimator::Photons);
+            let mut second = new();
+            assert!(!second.resume(&first.checkpoint()[1..]) && second.resume(&first.checkpoint()));
+            assert!(second.advance(2, |_, _| ControlFlow::Continue(())).finished);
+            assert_eq!(second.layers().unwrap(), layers(&scene, &task, 4), "{estimator}");
+        }
+    }
+}
+
+/// Decades of photons over which the error's fall is measured, and the slope it must not be above: −1/2 in the error is
+/// −1 in its square. Sixteen seeds know the square to about a third, the slope over a hundred times the photons to 0.1.
+const FALL: [u64; 2] = [20_000, 2_000_000];
+const SLOPE: f64 = -1.0 + 0.1;
+
+/// Against cells, which are right to 10⁻⁶ here.
+#[test]
+fn the_error_falls_as_the_root_of_photons_or_faster() {
+    let scene = scene("glass-sphere", &[]);
+    let exact = layers(&scene, &of(Estimator::Cells, PathClass::Transmit2, [16, 16], 0, 128 * 128), 2);
+    let exact = layer(&exact, "irradiance.caustic");
+    let squared = |photons: u64| {
+        let one = |seed: u64| {
+            let all = layers(&scene, &task(PathClass::Transmit2, [16, 16], seed, photons), 1);
+            let off = layer(&all, "irradiance.caustic").iter().zip(exact).map(|(a, b)| f64::from(a - b).powi(2));
+            off.sum::<f64>()
+        };
+        (0..16u64).into_par_iter().map(one).sum::<f64>() / 16.0
+    };
+    let [few, many] = FALL.map(squared);
+    let slope = (many / few).ln() / (FALL[1] as f64 / FALL[0] as f64).ln();
+    println!("squared error {few:.2e} to {many:.2e}: slope {slope:.3}");
+    assert!(slope <= SLOPE, "{slope}");
 }
 
 /// How far the summed true variance may be from the estimated one; measured 0.94 of it.

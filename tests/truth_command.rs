@@ -36,24 +36,28 @@ fn error(output: &Output) -> String {
 
 #[test]
 fn killed_twenty_times_it_ends_with_the_same_bytes() {
-    let (straight, broken) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    assert!(run(LONG, &straight, "t.exr").status.success());
-    let resumed = format!("{LONG} --resume");
-    let mut killed = 0;
-    for k in 0..20u64 {
-        let mut child = command(&resumed, broken.path(), "t.exr").stderr(Stdio::null()).spawn().unwrap();
-        sleep(Duration::from_millis(40 + k * 37 % 160));
-        killed += u32::from(child.try_wait().unwrap().is_none());
-        child.kill().unwrap();
-        child.wait().unwrap();
+    for (how, photons) in [("photons", "6000000"), ("cells", "40000")] {
+        let line = LONG.replace("2000000", photons) + " --estimator " + how;
+        let (straight, broken) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        assert!(run(&line, &straight, "t.exr").status.success());
+        let resumed = format!("{line} --resume");
+        let mut killed = 0;
+        for k in 0..20u64 {
+            let mut child = command(&resumed, broken.path(), "t.exr").stderr(Stdio::null()).spawn().unwrap();
+            sleep(Duration::from_millis(40 + k * 37 % 160));
+            killed += u32::from(child.try_wait().unwrap().is_none());
+            child.kill().unwrap();
+            child.wait().unwrap();
+        }
+        println!("{how}: killed {killed} times");
+        // Where a machine is so fast that it finishes between kills, those that came before count.
+        assert!(killed >= 1, "{how}: finished before the first kill");
+        let last = run(&resumed, &broken, "t.exr");
+        assert!(last.status.success(), "{}", error(&last));
+        let read = |folder: &TempDir| fs::read(folder.path().join("t.exr")).unwrap();
+        assert!(read(&straight) == read(&broken), "{how}: killed {killed} times, other bytes came out");
+        assert!(!broken.path().join("t.exr.partial").exists());
     }
-    // Where a machine is so fast that it finishes between kills, those that came before count.
-    assert!(killed >= 1, "finished before the first kill");
-    let last = run(&resumed, &broken, "t.exr");
-    assert!(last.status.success(), "{}", error(&last));
-    let read = |folder: &TempDir| fs::read(folder.path().join("t.exr")).unwrap();
-    assert!(read(&straight) == read(&broken), "killed {killed} times, other bytes came out");
-    assert!(!broken.path().join("t.exr.partial").exists());
 }
 
 #[test]
@@ -97,7 +101,9 @@ fn stopped_by_the_clock_it_writes_and_goes_on() {
     assert!(first.status.success() && error(&first).contains("not finished"), "{}", error(&first));
     let second = run(&format!("{LONG} --max-seconds 0 --resume"), &folder, "t.exr");
     assert!(error(&second).contains("going on after"), "{}", error(&second));
-    // Another task does not take what this one left.
+    // Another task does not take what this one left, nor another estimator.
+    let other = run(&format!("{LONG} --max-seconds 0 --resume --estimator cells"), &folder, "t.exr");
+    assert!(error(&other).contains("of another task"), "{}", error(&other));
     let other = run(&format!("{LONG} --max-seconds 0 --resume --seed 1"), &folder, "t.exr");
     assert!(error(&other).contains("of another task"), "{}", error(&other));
 }
@@ -109,6 +115,7 @@ fn what_cannot_be_done_is_said() {
         ("truth glass-sphere --camera nowhere", 2, "the scene has: main, region"),
         ("truth glass-sphere --until mse=1", 2, "relmse=X"),
         ("truth glass-sphere --paths some", 2, "reflect-1"),
+        ("truth glass-sphere --estimator guess", 2, "photons or cells"),
         ("truth glass-sphere --set light.side=4", 2, "scene.PATH=VALUE"),
         ("truth nothing-of-the-kind", 2, "nothing-of-the-kind"),
     ] {

@@ -108,3 +108,33 @@ pub fn judged(space: &Space, eye: &Eye, mask: &[f64]) -> Vec<bool> {
     };
     (0..eye.pixels()).map(|pixel| mask[pixel] == 0.0 && looks(pixel)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// The middle of one pixel of 64 stands for the point under the lamp: second order in 1/64.
+    const PIXEL: f64 = 1e-3;
+
+    /// A lamp under coloured water lights the floor below it through the water between them.
+    #[test]
+    fn a_submerged_lamp_is_absorbed_on_its_way() {
+        let text = Scene::load("flat-water", &[]).unwrap().source.text;
+        let (above, _) = text.split_once("[lights.sun").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("lamp.toml");
+        let text = above.replace("absorption = 0.0", "absorption = [0.0, 0.5, 2.0]");
+        std::fs::write(&file, text + "[lights.lamp.point]\nposition = [0.0, -0.2, 0.0]\nintensity = 3.0\n").unwrap();
+        let scene = Scene::load(file.to_str().unwrap(), &[]).unwrap();
+        let (space, size) = (Space::new(&scene), 65);
+        let eye = Eye::new(&scene.cameras["region"], [size; 2]);
+        let layer: Vec<f64> = direct(&space, &eye, 1).sums.mean().collect();
+        let middle = (size * size / 2) as usize * 3;
+        for (band, absorption) in [0.0, 0.5, 2.0].into_iter().enumerate() {
+            let exact = 3.0 / 0.64 * f64::exp(-0.8 * absorption);
+            let found = layer[middle + band];
+            assert!((found / exact - 1.0).abs() < PIXEL, "band {band}: {found} for {exact}");
+        }
+    }
+}

@@ -66,7 +66,7 @@ impl Judged {
 }
 
 /// An estimate in the making, of irradiance (W/m², [`BANDS`] a pixel).
-pub trait Estimate: Sync {
+pub trait Estimate: Send + Sync {
     /// Chunks added so far.
     fn chunks(&self) -> u64;
 

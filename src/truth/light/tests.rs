@@ -51,9 +51,14 @@ position = [0.0, 3.0, 0.0]
 intensity = 1.0
 "#;
 
+/// A cube without its lid.
+const OPEN_CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 -1 1\nv -1 -1 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\n\
+                         f 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+
 fn load(text: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("box.toml");
+    std::fs::write(folder.path().join("open.obj"), OPEN_CUBE).unwrap();
     std::fs::write(&file, text).unwrap();
     Scene::load(file.to_str().unwrap(), &[]).unwrap()
 }
@@ -101,6 +106,35 @@ fn nothing_is_lost_in_a_closed_box() {
     }
 }
 
+/// The lamp and a mirror ball under coloured water: what lands has been in water all the way, whatever it met first.
+#[test]
+fn light_starts_in_the_medium_about_it() {
+    let water = "[objects.water]\nmaterial = \"water\"\nvisible_to_camera = true\nquad = { center = [0.0, 3.5, 0.0], \
+                 u = [4.0, 0.0, 0.0], v = [0.0, 0.0, -4.0] }\n[materials.water.dielectric]\nior = 1.33\n\
+                 absorption = [0.0, 0.1, 0.5]\n[materials.white";
+    let scene =
+        load(&BOX.replace("material = \"glass\"", "material = \"silver\"").replace("[materials.white", water).replace(
+            "[materials.glass.dielectric]\nior = 1.5\nabsorption = 0.0",
+            "[materials.silver.mirror]\nreflectance = 1.0",
+        ));
+    let (balance, landings) = flux(&scene, PathClass::Reflect1, 4096);
+    let from_the_ball = landings.iter().filter_map(|l| {
+        let back = l.surface.p.dot(l.d);
+        let half = (1.0 - (l.surface.p.length_squared() - back * back)).sqrt();
+        (half >= 0.0).then(|| (l, back - half))
+    });
+    let mut seen = 0;
+    for (landing, after) in from_the_ball {
+        let bounce = landing.surface.p - after * landing.d;
+        let metres = after + (bounce - DVec3::new(0.0, 3.0, 0.0)).length();
+        let left = landing.flux / landing.flux.x;
+        let expected = DVec3::new(0.0, -0.1 * metres, -0.5 * metres).exp();
+        assert!((left - expected).length() < ROUNDING, "{left} after {metres} m, not {expected}");
+        seen += 1;
+    }
+    assert!(seen > 100 && balance.absorbed.z > balance.absorbed.y, "{seen} from the ball");
+}
+
 #[test]
 fn hard_cases_are_finite_and_the_same_twice() {
     let inside = BOX.replace("position = [0.0, 3.0, 0.0]", "position = [0.2, 0.9, 0.0]");
@@ -120,6 +154,11 @@ fn hard_cases_are_finite_and_the_same_twice() {
         )
         .replace("receiver = \"floor\"", "receiver = \"back\"")
         .replace("[materials.white", "[materials.silver.mirror]\nreflectance = 1.0\n[materials.white");
+    // A lid of a cube, gone: light goes in without meeting glass, and comes out of it.
+    let open = BOX.replace(
+        ball,
+        "mesh = { file = \"open.obj\", fit = 1.5, center = [0.0, -0.75, 0.0], rotate = [0.0, 0.0, 0.0] }",
+    );
     let tiny = BOX.replace("unit = 1.0", "unit = 1e-3");
     let huge = BOX.replace("unit = 1.0", "unit = 1e3");
     for (name, text) in [
@@ -128,6 +167,7 @@ fn hard_cases_are_finite_and_the_same_twice() {
         ("touching", touching),
         ("coincident", coincident),
         ("mirrors", mirrors),
+        ("open mesh", open),
         ("tiny", tiny),
         ("huge", huge),
     ] {

@@ -23,7 +23,7 @@ const BANDS_A_STAGE: u64 = 64;
 /// Cells a side of the first stage, at least, where a goal says how many the last one has.
 const FIRST: u64 = 16;
 /// Cells a side of the first stage where no goal says.
-const START: u64 = 32;
+const START: u64 = 64;
 /// Cells a side of the last stage at most: beyond it a cell's landing is lost in the rounding of its rays.
 const LAST: u64 = 1 << 20;
 

@@ -1,0 +1,87 @@
+//! Every method on every shipped scene against a reference that is kept, each with a bound of its own.
+
+use std::{path::Path, process::Command};
+
+use nephroid::{
+    lab::{self, Comparison, MEASURES, Picture},
+    methods,
+    scene::Scene,
+    truth,
+};
+
+/// The judged relMSE that each method had on each scene (lavapipe, `light.side` 1024, defaults else).
+const MEASURED: [(&str, &str, f64); 5] = [
+    ("bunny", "maps", 2.2e-3),
+    ("diffuse", "maps", 1.0e-4),
+    ("flat-water", "maps", 5.2e-13),
+    ("glass-sphere", "maps", 6.7e-4),
+    ("null", "maps", 6.0e-4),
+];
+/// How much more than measured is allowed: other devices round other photons over a texel's edge.
+const MARGIN: f64 = 1.25;
+/// What is allowed however little was measured: float32 roundings of some thousand photons a texel.
+const ROUNDING: f64 = 1e-10;
+/// Share of the caustic's energy that may be lost or made.
+const ENERGY: f64 = 0.01;
+
+fn reference(scene: &str) -> Picture {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references").join(format!("{scene}.exr"));
+    Picture::read(&path).unwrap_or_else(|error| panic!("{error}; tests/references/README.md says how it is made"))
+}
+
+fn rendered(scene: &str, method: &str) -> Picture {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_nephroid"));
+    command.args(["render", scene, "--method", method, "--camera", "region", "--size", "128x128", "--validation"]);
+    command.args(["--set", "light.side=1024", "--warmup", "0", "--repeat", "1", "--out"]).arg(folder.path().join("out"));
+    let output = command.output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Picture::read(&folder.path().join("out/image.exr")).expect("a picture")
+}
+
+fn value(comparison: &Comparison, measure: &str) -> f64 {
+    let at = MEASURES.iter().position(|name| *name == measure).expect("a measure");
+    comparison.measures[at].value
+}
+
+#[test]
+fn every_method_on_every_scene_is_as_right_as_it_was() {
+    let mut wrong = Vec::new();
+    for (scene, _) in Scene::shipped() {
+        let reference = reference(scene);
+        for method in methods::ALL {
+            let Some((_, _, measured)) = MEASURED.iter().find(|(s, m, _)| *s == scene && *m == method.name()) else {
+                wrong.push(format!("{scene}, {}: no bound; add what was measured", method.name()));
+                continue;
+            };
+            // Where nothing is specular there is direct light alone.
+            let caustic = Scene::load(scene, &[]).expect("a shipped scene").has_specular();
+            let layer = if caustic { "irradiance.caustic" } else { "irradiance.direct" };
+            let comparison = lab::compare(&rendered(scene, method.name()), &reference, layer).expect("comparable");
+            let (relmse, energy) = (value(&comparison, "relmse"), value(&comparison, "energy_ratio"));
+            let bound = (MARGIN * measured).max(ROUNDING);
+            println!("{scene:13} {:6} relmse {relmse:.3e} of {bound:.1e}, energy {energy:.5}", method.name());
+            wrong.extend(comparison.warnings.iter().map(|warning| format!("{scene}: {warning}")));
+            // Written so that what is no number is wrong.
+            if !(relmse <= bound) {
+                wrong.push(format!("{scene}, {}: relmse {relmse:e}, above {bound:e}", method.name()));
+            }
+            if !((energy - 1.0).abs() <= ENERGY) {
+                wrong.push(format!("{scene}, {}: energy {energy}", method.name()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn references_are_of_these_scenes_and_of_this_truth() {
+    for (name, _) in Scene::shipped() {
+        let scene = Scene::load(name, &[]).expect("a shipped scene");
+        let about = reference(name).about().clone();
+        let of = |key: &str| about.get(key).cloned().unwrap_or_default();
+        assert_eq!(of("scene.hash"), scene.source.hash, "{name}: the scene has changed since its reference was made");
+        assert_eq!(of("truth.version"), truth::VERSION.to_string(), "{name}: made by another version of the truth");
+        assert_eq!((of("camera").as_str(), of("size").as_str(), of("finished").as_str()), ("region", "128x128", "true"));
+    }
+}
