@@ -249,6 +249,15 @@ impl Scene {
         load::load(name_or_path, overrides)
     }
 
+    /// Loads a scene again from what it said of itself: its name, [`Source::file`] and [`Source::overrides`]. Whether it
+    /// still is the same, [`Source::hash`] says.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load_again(name: &str, file: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
+        load::load(if file == shipped::place(name) { name } else { file }, overrides)
+    }
+
     /// Name and title of every scene inside the program, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
