@@ -143,16 +143,20 @@ impl View {
     /// The part of a perspective view's window that a cone from its origin touches (unit axis, half angle below 90°);
     /// `None` if they are apart.
     pub fn within_cone(mut self, axis: DVec3, half: f64) -> Option<Self> {
-        // The cone is the outline of a sphere that it touches all round.
-        let touched = Extent { points: vec![], spheres: vec![(self.origin + axis, half.sin())] };
         for (k, side) in [self.right, self.up].into_iter().enumerate() {
-            // A cone that reaches far aside bounds no tangent.
-            if let Some((low, high)) = tangents(self.origin, self.forward, side, &touched) {
-                (self.low[k], self.high[k]) = (self.low[k].max(low), self.high[k].min(high));
+            // In the plane of `forward` and `side` the cone is the outline of a circle of radius sin(half) at `flat`.
+            let flat = DVec2::new(axis.dot(side), axis.dot(self.forward));
+            let (middle, reach) = (flat.x.atan2(flat.y), half.sin() / flat.length());
+            if reach >= 1.0 {
+                continue; // the cone goes all round
             }
-            if self.low[k] >= self.high[k] {
+            let (low, high) = (middle - reach.asin(), middle + reach.asin());
+            if low >= self.high[k].atan() || high <= self.low[k].atan() {
                 return None;
             }
+            // Within the window's angles, which have tangents.
+            self.low[k] = low.max(self.low[k].atan()).tan();
+            self.high[k] = high.min(self.high[k].atan()).tan();
         }
         Some(self)
     }
@@ -323,7 +327,7 @@ mod tests {
         let expected = 0.75f64.atan();
         assert!((low - expected + half).abs() < 1e-12 && (high - expected - half).abs() < 1e-12, "{low} {high}");
         let reaches = view.within_cone(DVec3::new(0.72, 0.0, -0.694), 0.3).unwrap();
-        assert_eq!(reaches.high.x, 1.0, "the window ends before the cone");
+        assert!((reaches.high.x - 1.0).abs() < 1e-12, "the window ends before the cone");
         assert!(view.within_cone(DVec3::new(0.96, 0.0, -0.28), half).is_none());
     }
 

@@ -116,7 +116,9 @@ fn mean_over_pixel(pixels: &Pixels, pixel: usize, of: impl Fn(DVec3) -> f64) -> 
 fn a_spot_over_flat_water() {
     let scene = under("flat-water", &spot("[0.1, 1.5, 0.0]", "[0, -1, 0]", 10.0, 25.0));
     let ((position, beam), region) = (beam(&scene), scene.region.clone());
-    let found = of(&gpu(), scene);
+    // Some twenty photons a texel: with five, their lattice beats against the map's by a percent.
+    let dense = [("light.side", "1024"), ("maps.side", "256")];
+    let found = picture(&gpu(), &job_of(scene, &dense, "region", [SIDE; 2]));
     let (mut total, mut off) = ([0.0; 2], Vec::new());
     let (pixels, brightest) =
         (Pixels { region: &region, size: [SIDE; 2] }, below_water(position, &beam, DVec3::new(0.1, -1.0, 0.0)));
@@ -124,7 +126,11 @@ fn a_spot_over_flat_water() {
         let exact = mean_over_pixel(&pixels, k, |p| below_water(position, &beam, p));
         let e = f64::from(found.layer("irradiance.caustic")[3 * k]);
         total = [total[0] + e, total[1] + exact];
-        off.push((e - exact) / (exact + DARK * brightest));
+        // Where the receiver ends, splats are cut and the look-up has no neighbour: those pixels are in the total alone.
+        let border = [k % SIDE as usize, k / SIDE as usize].iter().any(|x| *x == 0 || *x == SIDE as usize - 1);
+        if !border {
+            off.push((e - exact) / (exact + DARK * brightest));
+        }
     }
     let (worst, total) = (worst(off.iter().copied()), total[0] / total[1] - 1.0);
     println!("spot over flat water: total {total:+.5}, worst of {} pixels {worst:.5}", off.len());
