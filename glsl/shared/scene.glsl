@@ -50,7 +50,7 @@ struct Light {
     uint kind;
     vec3 vector; // directional: unit direction of travel; point, spot: position
     vec3 power;  // directional: irradiance of a plane facing it, W/m^2; point, spot: intensity, W/sr (on the axis)
-    uint medium; // the material that a point light is in, or MEDIUM_AIR
+    uint media;  // about a point light (transport.glsl)
     vec3 axis;   // spot: unit
     float inner; // 1 - cosine of the half angle up to which all of the power goes; above 2: everywhere
     float outer; // 1 - cosine of the half angle beyond which none does

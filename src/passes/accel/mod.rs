@@ -59,6 +59,9 @@ impl SceneArrays {
             .filter_map(|(i, o)| place(i, o, &mut meshes).transpose())
             .collect::<Result<_, _>>()?;
         check_count("objects", placed.len(), MOST_INSTANCES)?;
+        let dielectric = |m: &SceneMaterial| matches!(m.kind, MaterialKind::Dielectric { .. });
+        let named = scene.materials.iter().rposition(dielectric).map_or(0, |last| last + 1);
+        check_count("materials up to the last dielectric by name", named, MOST_MATERIALS)?;
         let boxes: Vec<Aabb> = placed.iter().map(|p| p.bounds).collect();
         let top = if boxes.is_empty() { nowhere() } else { Tree::over(&boxes, TOP_LEVELS) };
         let base = top.nodes.len() as u32;
@@ -221,11 +224,6 @@ fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
     })
 }
 
-/// The medium in the numbers of the shaders.
-pub fn medium_index(medium: Option<usize>) -> u32 {
-    medium.map_or(MEDIUM_AIR, |m| m as u32)
-}
-
 /// Parallel light has no place: it comes through air. A spot is a point light with a beam.
 fn light(scene: &Scene, light: &crate::scene::Light) -> Result<Light, AccelError> {
     let (kind, at) = match light.kind {
@@ -240,7 +238,7 @@ fn light(scene: &Scene, light: &crate::scene::Light) -> Result<Light, AccelError
         kind,
         vector: vector(&light.name, "its place or direction", at)?,
         power: vector(&light.name, "its power", light.kind.power().into())?,
-        medium: medium_index(light.kind.position().and_then(|p| scene.medium_at(p))),
+        media: packed_media(&light.kind.position().map_or(vec![], |p| scene.media_at(p))),
         axis: vector(&light.name, "its axis", axis)?,
         inner,
         outer,

@@ -100,7 +100,8 @@ pub fn walk(space: &Space, class: PathClass, start: &Start, faint: Faint, land: 
     }
     walk.balance.emitted = flux;
     let mut media = start.media.unwrap_or_default();
-    if surface.ng.dot(ray.d) > 0.0 && !media.holds(surface.material) {
+    let dielectric = matches!(space.material(&surface).kind, MaterialKind::Dielectric { .. });
+    if dielectric && surface.ng.dot(ray.d) > 0.0 && !media.holds(surface.material) {
         media = media.entered(surface.material); // from infinity, or through a hole
     }
     let mut branch = Branch { ray, flux, share: 1.0, chain: Chain::default(), path: 0, media, crossed: 0 };
