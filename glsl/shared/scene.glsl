@@ -2,6 +2,7 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
+// DISPERSIVE is defined where materials bend the bands apart: they are then traced apart.
 // The host defines NO_SPHERES, NO_QUADS, NO_MESHES or NO_SPOTS where a scene has none: their code is then not compiled.
 
 // A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
@@ -37,7 +38,7 @@ const uint SHAPE_MESH = 2u;
 
 struct Material {
     uint kind;
-    float ior;
+    vec3 ior;        // of each band
     vec3 colour;     // albedo, or a mirror's reflectance
     vec3 absorption; // 1/m
 };
