@@ -115,7 +115,8 @@ impl Bars {
             Some((subject, bar)) if subject == making.subject => bar.at(&making.standing),
             _ => {
                 say(&format!("making the truth of {}, for {} s at most", making.subject, self.seconds));
-                let bar = TruthProgress::new(Some(self.seconds), making.standing.photons);
+                let mut bar = TruthProgress::new(Some(self.seconds));
+                bar.start(making.standing.photons);
                 self.of = Some((making.subject.to_owned(), bar));
             }
         }

@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use super::CompareError;
-use crate::image::{Layer, Layers, Provenance};
+use crate::{
+    image::{Layer, Layers, Provenance},
+    metrics::Correlation,
+};
 
 /// The camera that sees the region and nothing else.
 pub(super) const REGION: &str = "region";
@@ -49,6 +52,16 @@ impl Picture {
     pub(super) fn variance(&self, layer: &str) -> Option<&Layer> {
         let variance = self.layers.get(&format!("{layer}.variance"))?;
         (!variance.data().contains(&f32::INFINITY)).then_some(variance)
+    }
+
+    /// How the errors of a layer move together, as the truth says of the caustic's.
+    pub(super) fn correlation(&self, layer: &str) -> Correlation {
+        match layer {
+            "irradiance.caustic" => {
+                Correlation { freedom: self.number("noise.freedom"), total: self.number("noise.total") }
+            }
+            _ => Correlation::default(),
+        }
     }
 
     /// Whether each pixel may be judged: no part of it is masked.

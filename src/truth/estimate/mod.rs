@@ -9,7 +9,7 @@ mod sums;
 use std::{fmt, str::FromStr};
 
 pub use cells::Cells;
-pub use counts::{CHUNKS, Counts};
+pub use counts::{CHUNKS, Counts, PARTS};
 pub use sums::{BANDS, Sums};
 
 use super::{Goal, Standing};
@@ -76,8 +76,11 @@ pub trait Estimate: Send + Sync {
     /// Adds the next chunk.
     fn add(&mut self, chunk: &[f64]);
 
-    /// How far it is from the goal.
-    fn standing(&self, goal: &Goal, judged: &Judged) -> Standing;
+    /// How far it is from the goal: dear, since it looks at every pixel.
+    fn standing(&self, goal: &Goal) -> Standing;
+
+    /// Whether the goal may have been met by the last chunk, whatever the pixels say.
+    fn may_be_finished(&self, goal: &Goal) -> bool;
 
     /// The irradiance.
     fn mean(&self) -> Vec<f64>;
