@@ -8,6 +8,7 @@ use super::Failure;
 use crate::{
     lab::Format,
     methods::{self, Method},
+    names::NoSuch,
     renderer::{self, Job, Providers},
     scene::Scene,
     settings::Settings,
@@ -153,13 +154,11 @@ fn parse_time(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|t: &f64| t.is_finite()).ok_or_else(|| "expected a number of seconds".to_owned())
 }
 
-fn parse_method(text: &str) -> Result<Choice, String> {
-    if text == "none" {
-        return Ok(Choice(None));
+fn parse_method(text: &str) -> Result<Choice, NoSuch> {
+    match text {
+        "none" => Ok(Choice(None)),
+        name => methods::find(name).map(|method| Choice(Some(method))),
     }
-    let names: Vec<_> = methods::ALL.iter().map(|m| m.name()).chain(["none"]).collect();
-    let found = methods::find(text).map(|method| Choice(Some(method)));
-    found.ok_or_else(|| format!("there is no such method; there are: {}", names.join(", ")))
 }
 
 impl ValueEnum for Format {

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     lab::{self, CompareReport, Comparison, Limit, MEASURES, Picture, Report},
+    names::NoSuch,
     whole::OutFolder,
 };
 
@@ -71,8 +72,9 @@ fn write_maps(mut folder: OutFolder, paths: &[PathBuf], comparisons: &[Compariso
 
 fn parse_limit(text: &str) -> Result<Limit, String> {
     let expected = || format!("expected MEASURE=VALUE, a number not below 0; measures: {}", MEASURES.join(", "));
+    let unknown = |name| NoSuch::new("measure", name, MEASURES).to_string();
     let (name, value) = text.split_once('=').ok_or_else(expected)?;
-    let measure = MEASURES.into_iter().find(|measure| *measure == name).ok_or_else(expected)?;
+    let measure = MEASURES.into_iter().find(|measure| *measure == name).ok_or_else(|| unknown(name))?;
     let most = value.parse().ok().filter(|most: &f64| most.is_finite() && *most >= 0.0).ok_or_else(expected)?;
     Ok(Limit { measure, most })
 }

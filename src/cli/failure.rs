@@ -6,6 +6,7 @@ use crate::{
     gpu::GpuError,
     image::ImageError,
     lab::{CompareError, LabError},
+    names::NoSuch,
     passes::PlanError,
     renderer::RenderError,
     scene::{Place, SceneError},
@@ -64,6 +65,12 @@ impl From<SettingError> for Failure {
     }
 }
 
+impl From<NoSuch> for Failure {
+    fn from(error: NoSuch) -> Self {
+        Self::usage(error)
+    }
+}
+
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         // A file with a fault is no fault of the command.
@@ -85,7 +92,7 @@ impl From<RenderError> for Failure {
             RenderError::Lacks { .. } => NO_DEVICE,
             RenderError::Gpu(NoDevice | NoLoader(_) | NoSuchDevice { .. } | Unsuitable { .. }) => NO_DEVICE,
             RenderError::Gpu(NoCapture(_) | TooLarge { .. }) => USAGE,
-            RenderError::Unknown { .. } | RenderError::Plan(PlanError::Refused { .. }) => USAGE,
+            RenderError::Unknown(_) | RenderError::Plan(PlanError::Refused { .. }) => USAGE,
             RenderError::Gpu(_) | RenderError::Plan(PlanError::Accel(_)) => FAILED,
         };
         Self { code, error: error.into() }

@@ -8,7 +8,6 @@ use std::{
     time::Instant,
 };
 
-use anyhow::anyhow;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
@@ -93,7 +92,7 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     }
     let (Some(scene), Some(out)) = (&args.scene, &args.out) else { return Ok(()) };
     let scene = Scene::load(scene, &args.set)?;
-    let camera = camera(&scene, &args.camera)?;
+    let camera = scene.camera(&args.camera)?;
     let noise = args.until.or(args.photons.is_none().then_some(DEFAULT_NOISE));
     let goal = Goal { photons: args.photons, noise };
     let paths = args.paths.unwrap_or(scene.paths);
@@ -106,11 +105,6 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
         return Ok(());
     }
     make(args, (&scene, camera, &task), Partial { file: partial(out), key }, &store, out)
-}
-
-fn camera<'a>(scene: &'a Scene, name: &str) -> Result<&'a Camera, Failure> {
-    let known = || scene.cameras.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-    scene.cameras.get(name).ok_or_else(|| Failure::usage(anyhow!("--camera {name}: the scene has: {}", known())))
 }
 
 fn make(

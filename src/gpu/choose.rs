@@ -4,6 +4,7 @@ use ash::vk;
 use std::ffi::CStr;
 
 use super::error::{GpuError, Named};
+use crate::names;
 
 /// How a device is asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -256,7 +257,9 @@ pub(super) fn choose(devices: Vec<DeviceInfo>, choice: &DeviceChoice) -> Result<
         DeviceChoice::Best => "any".to_owned(),
         DeviceChoice::Named(asked) => asked.clone(),
     };
-    let device = chosen.ok_or(GpuError::NoSuchDevice { asked, present })?;
+    let near =
+        names::guess(&asked, present.split([' ', ',', '(', ')'])).map_or(String::new(), |near| format!("; {near}"));
+    let device = chosen.ok_or(GpuError::NoSuchDevice { asked, present, near })?;
     if device.missing.is_empty() {
         Ok(device)
     } else {

@@ -12,11 +12,12 @@ use toml::{
 
 use super::{
     Scene, Source, build,
-    error::{Place, SceneError, near},
+    error::{Place, SceneError},
     file::{SceneFile, VERSION},
     locate::{Key, Locator, place_in},
     overrides, shipped,
 };
+use crate::names::near;
 
 /// A scene's text, and the files it may name.
 struct Found {

@@ -26,6 +26,8 @@ mod overrides;
 mod patch;
 mod shipped;
 
+use crate::names::NoSuch;
+
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
 
@@ -278,6 +280,15 @@ impl Scene {
     /// Name and title of every scene inside the program, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
+    }
+
+    /// The camera of that name.
+    ///
+    /// # Errors
+    /// Names the ones near it, or all.
+    pub fn camera(&self, name: &str) -> Result<&Camera, NoSuch> {
+        let known = || self.cameras.keys().map(String::as_str);
+        self.cameras.get(name).ok_or_else(|| NoSuch::new("camera", name, known()))
     }
 
     /// Whether anything refracts or reflects; without it there is no caustic.
