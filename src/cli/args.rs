@@ -59,11 +59,20 @@ pub struct PlanArgs {
 
 #[derive(Args)]
 pub struct ScenesArgs {
-    /// Print this scene's file
-    #[arg(conflicts_with = "format")]
+    /// Say what is in this scene: a shipped one by name, or the path of a .toml file
+    #[arg(value_name = "SCENE")]
     pub name: Option<String>,
+    /// Print the scene's file as it is written
+    #[arg(long, requires = "name", conflicts_with = "format")]
+    pub source: bool,
     #[command(flatten)]
     pub list: ListArgs,
+}
+
+#[derive(Args)]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: clap_complete::Shell,
 }
 
 #[derive(Args)]

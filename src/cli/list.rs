@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     gpu,
-    lab::{DevicesReport, MethodsReport, PlanReport, Report, ScenesReport},
+    lab::{DevicesReport, MethodsReport, PlanReport, Report, SceneReport, ScenesReport},
     renderer,
     scene::Scene,
 };
@@ -31,10 +31,9 @@ pub fn methods(args: &ListArgs) -> Result<(), Failure> {
 }
 
 pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
-    match &args.name {
-        Some(name) => output::print(Scene::load(name, &[])?.source.text.as_bytes()),
-        None => print(&ScenesReport::new(), &args.list),
-    }
+    let Some(name) = &args.name else { return print(&ScenesReport::new(), &args.list) };
+    let scene = Scene::load(name, &[])?;
+    if args.source { output::print(scene.source.text.as_bytes()) } else { print(&SceneReport::new(&scene), &args.list) }
 }
 
 fn print(report: &impl Report, args: &ListArgs) -> Result<(), Failure> {

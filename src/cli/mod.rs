@@ -14,7 +14,7 @@ mod truth;
 
 use std::time::Instant;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 pub use failure::Failure;
 
@@ -43,8 +43,10 @@ enum Command {
     Devices(args::ListArgs),
     /// List methods and settings, with units, defaults and ranges
     Methods(args::ListArgs),
-    /// List the shipped scenes, or print one
+    /// List the shipped scenes, or say what is in one
     Scenes(args::ScenesArgs),
+    /// Print a script that completes commands and options in a shell
+    Completions(args::CompletionsArgs),
 }
 
 impl Cli {
@@ -59,6 +61,14 @@ impl Cli {
             Command::Devices(args) => list::devices(&args),
             Command::Methods(args) => list::methods(&args),
             Command::Scenes(args) => list::scenes(&args),
+            Command::Completions(args) => completions(args.shell),
         }
     }
+}
+
+/// Written to memory first: the generator panics where its writer fails.
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "nephroid", &mut script);
+    output::print(&script)
 }

@@ -16,6 +16,7 @@ mod plan_report;
 mod provenance;
 mod render_report;
 mod report;
+mod scene_report;
 mod table;
 
 pub use catalogue::{MethodsReport, ScenesReport};
@@ -31,4 +32,5 @@ pub use plan_report::PlanReport;
 pub use provenance::{Provenance, Run, exposure};
 pub use render_report::RenderReport;
 pub use report::{Format, Report};
+pub use scene_report::SceneReport;
 pub use table::{Cell, Table};

@@ -89,7 +89,10 @@ fn a_command_must_be_whole() {
         ("render --out x", "<SCENE>"),
         ("render glass-sphere", "--out"),
         ("plan", "<SCENE>"),
-        ("scenes null --format json", "--format"),
+        ("scenes null --source --format json", "--format"),
+        ("scenes --source", "<SCENE>"),
+        ("completions", "<SHELL>"),
+        ("completions basch", "bash"),
     ] {
         let ran = nephroid(arguments);
         assert_eq!(ran.code, Some(USAGE), "{arguments}: {}", ran.err);

@@ -6,6 +6,7 @@ mod lists;
 mod no_room;
 mod render;
 mod repeat;
+mod scenes;
 
 use std::{
     path::{Path, PathBuf},
