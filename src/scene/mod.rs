@@ -20,6 +20,7 @@ mod locate;
 mod measure;
 mod medium;
 mod mesh;
+mod models;
 mod obj;
 mod object;
 mod overrides;
@@ -30,6 +31,7 @@ use crate::names::NoSuch;
 
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
+pub use models::Models;
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.
 #[derive(Clone, Debug)]
@@ -156,7 +158,7 @@ impl Shape {
 /// A triangle mesh in its own units. Every vertex belongs to a triangle.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// As the scene names it.
+    /// As the scene names it: a path, or `model:NAME` of the [`Models`] folder.
     pub file: String,
     /// In the file's own units.
     pub positions: Vec<Vec3>,

@@ -3,6 +3,7 @@
 mod bad_options;
 mod bad_scenes;
 mod lists;
+mod models;
 mod no_room;
 mod render;
 mod repeat;
