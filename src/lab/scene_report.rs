@@ -1,7 +1,5 @@
 //! What is in a scene: enough to choose it, and to know what its pictures will show.
 
-use std::f64::consts::PI;
-
 use glam::DVec3;
 use serde::Serialize;
 
@@ -64,9 +62,9 @@ struct MaterialRow {
 struct LightRow {
     name: String,
     kind: &'static str,
-    /// W/m² on a plane that faces parallel light; W/sr of a point.
+    /// W/m² on a plane that faces parallel light; W/sr of a point, and on the axis of a spot.
     bands: [f64; 3],
-    /// In all directions, mean of the bands; parallel light has no end.
+    /// What it gives in all, mean of the bands; parallel light has no end.
     power_w: Option<f64>,
     direction: Option<[f64; 3]>,
     position_m: Option<[f64; 3]>,
@@ -154,24 +152,26 @@ impl MaterialRow {
 
 impl LightRow {
     fn new(light: &Light) -> Self {
-        let name = light.name.clone();
-        match light.kind {
-            LightKind::Directional { direction, irradiance: bands } => {
-                let direction = Some(direction.to_array());
-                Self { name, kind: "directional", bands, power_w: None, direction, position_m: None }
-            }
-            LightKind::Point { position, intensity: bands } => {
-                let power_w = Some(4.0 * PI * bands.iter().sum::<f64>() / 3.0);
-                Self { name, kind: "point", bands, power_w, direction: None, position_m: Some(position.to_array()) }
-            }
+        let (kind, direction) = match &light.kind {
+            LightKind::Directional { direction, .. } => ("directional", Some(*direction)),
+            LightKind::Point { .. } => ("point", None),
+            LightKind::Spot { beam, .. } => ("spot", Some(beam.axis)),
+        };
+        Self {
+            name: light.name.clone(),
+            kind,
+            bands: light.kind.power(),
+            power_w: light.kind.flux().map(|bands| bands.iter().sum::<f64>() / 3.0),
+            direction: direction.map(|d| d.to_array()),
+            position_m: light.kind.position().map(|p| p.to_array()),
         }
     }
 
     fn cells(&self) -> Vec<Cell> {
-        let (unit, place) = match (self.direction, self.position_m) {
-            (Some(along), _) => ("W/m2", format!("along {}", vector(along))),
-            (None, at) => ("W/sr", format!("at {}", vector(at.unwrap_or_default()))),
-        };
+        let unit = if self.position_m.is_some() { "W/sr" } else { "W/m2" };
+        let at = self.position_m.map(|at| format!("at {}", vector(at)));
+        let along = self.direction.map(|along| format!("along {}", vector(along)));
+        let place = at.into_iter().chain(along).collect::<Vec<_>>().join(", ");
         let power = self.power_w.map_or(Cell::None, |watts| Cell::Real(watts, 4));
         let strength = Cell::text(format!("{} {unit}", shown(self.bands)));
         vec![Cell::text(&self.name), Cell::text(self.kind), strength, power, Cell::text(place)]

@@ -47,11 +47,13 @@ fn a_description_holds_what_is_in_the_file() {
 fn a_lamp_has_a_power_and_the_sun_has_none() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("lamp.toml");
-    let lamp = "\n[lights.lamp.point]\nposition = [0.0, 4.0, 0.0]\nintensity = [1.0, 2.0, 3.0]\n";
+    let lamp = "\n[lights.lamp.point]\nposition = [0.0, 4.0, 0.0]\nintensity = [1.0, 2.0, 3.0]\n\
+                [lights.spot.spot]\nposition = [0.0, 4.0, 0.0]\ndirection = [0.0, -1.0, 0.0]\nintensity = 1.0\nouter = 60.0\n";
     std::fs::write(&file, nephroid("scenes glass-sphere --source").ok().out + lamp).unwrap();
     let scene = nephroid(&format!("scenes {} --format json", file.display())).ok().json();
-    let [lamp, sun] = [&scene["lights"][0], &scene["lights"][1]];
+    let [lamp, spot, sun] = [0, 1, 2].map(|at| &scene["lights"][at]);
     assert!((lamp["power_w"].as_f64().unwrap() - 8.0 * std::f64::consts::PI).abs() < 1e-12, "{lamp}");
+    assert!((spot["power_w"].as_f64().unwrap() - std::f64::consts::PI).abs() < 1e-12, "{spot}");
     assert_eq!([&sun["name"].as_str().unwrap(), &sun["kind"].as_str().unwrap()], [&"sun", &"directional"]);
     assert!(sun["power_w"].is_null(), "{sun}");
 }
