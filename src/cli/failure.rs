@@ -46,6 +46,11 @@ impl Failure {
         Self { code: THRESHOLD, error: error.into() }
     }
 
+    /// Nothing here can do it.
+    pub(super) fn no_device(error: impl Into<anyhow::Error>) -> Self {
+        Self { code: NO_DEVICE, error: error.into() }
+    }
+
     /// The process's exit code.
     pub fn code(&self) -> ExitCode {
         ExitCode::from(self.code)

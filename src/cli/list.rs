@@ -1,5 +1,7 @@
 //! The commands that render nothing.
 
+use anyhow::anyhow;
+
 use super::{
     Failure,
     args::{ListArgs, PlanArgs, ScenesArgs},
@@ -7,7 +9,7 @@ use super::{
 };
 use crate::{
     gpu,
-    lab::{DevicesReport, MethodsReport, PlanReport, Report, SceneReport, ScenesReport},
+    lab::{DevicesReport, DoctorReport, MethodsReport, PlanReport, Report, SceneReport, ScenesReport},
     renderer,
     scene::Scene,
 };
@@ -24,6 +26,17 @@ pub fn devices(args: &ListArgs) -> Result<(), Failure> {
         return Err(gpu::GpuError::NoDevice.into());
     }
     print(&DevicesReport::new(&devices), args)
+}
+
+/// The report is printed whatever it says; the exit code says whether anything can be rendered.
+pub fn doctor(args: &ListArgs) -> Result<(), Failure> {
+    let report = DoctorReport::new();
+    print(&report, args)?;
+    match (report.has_device(), report.has_compiler()) {
+        (true, true) => Ok(()),
+        (false, _) => Err(Failure::no_device(anyhow!("no device can run any method; see the rows that do not say ok"))),
+        (true, false) => Err(Failure::failed(anyhow!("shaders do not compile; see the row of the compiler"))),
+    }
 }
 
 pub fn methods(args: &ListArgs) -> Result<(), Failure> {

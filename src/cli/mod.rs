@@ -41,6 +41,8 @@ enum Command {
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
     Devices(args::ListArgs),
+    /// Look at loader, layers, devices, compiler and folders: what is there, what is missing, and what to do about it
+    Doctor(args::ListArgs),
     /// List methods and settings, with units, defaults and ranges
     Methods(args::ListArgs),
     /// List the shipped scenes, or say what is in one
@@ -59,6 +61,7 @@ impl Cli {
             Command::Truth(args) => truth::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
+            Command::Doctor(args) => list::doctor(&args),
             Command::Methods(args) => list::methods(&args),
             Command::Scenes(args) => list::scenes(&args),
             Command::Completions(args) => completions(args.shell),

@@ -110,6 +110,15 @@ impl Store {
         }
     }
 
+    /// Every kind of which there are entries, or were.
+    pub fn kinds(&self) -> Vec<String> {
+        let folders = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+        let kind = |entry: fs::DirEntry| entry.file_name().into_string().ok().filter(|_| entry.path().is_dir());
+        let mut kinds: Vec<_> = folders.filter_map(kind).filter(|kind| self.kind_folder(kind).is_some()).collect();
+        kinds.sort();
+        kinds
+    }
+
     /// All entries of a kind, by key; whether each is whole, [`Store::get`] finds out.
     pub fn list(&self, kind: &str) -> Vec<Entry> {
         let mut entries: Vec<Entry> = self.files(kind).filter_map(|path| listed(&path)).collect();

@@ -2,6 +2,7 @@
 
 mod bad_options;
 mod bad_scenes;
+mod doctor;
 mod lists;
 mod models;
 mod no_room;
