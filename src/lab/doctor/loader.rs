@@ -14,12 +14,11 @@ const PATHS: [&str; 5] =
 /// Variables that put layers into every frame, timed ones too.
 const LAYERS: [&str; 2] = ["VK_INSTANCE_LAYERS", "VK_LOADER_LAYERS_ENABLE"];
 /// Variables that hide or order what is there.
-const CHOICES: [&str; 6] = [
+const CHOICES: [&str; 5] = [
     "VK_LOADER_DRIVERS_SELECT",
     "VK_LOADER_DRIVERS_DISABLE",
     "VK_LOADER_LAYERS_DISABLE",
     "MESA_VK_DEVICE_SELECT",
-    "CUDA_VISIBLE_DEVICES",
     "LP_NUM_THREADS",
 ];
 
