@@ -53,7 +53,8 @@ struct ObjectRow {
 struct MaterialRow {
     name: String,
     kind: &'static str,
-    ior: Option<f64>,
+    /// Of each band.
+    ior: Option<[f64; 3]>,
     /// Albedo, reflectance, or absorption in 1/m.
     bands: [f64; 3],
 }
@@ -143,7 +144,7 @@ impl MaterialRow {
 
     fn text(&self) -> String {
         match (self.kind, self.ior) {
-            ("dielectric", Some(ior)) => format!("index {ior}, absorption {} 1/m", shown(self.bands)),
+            ("dielectric", Some(ior)) => format!("index {}, absorption {} 1/m", shown(ior), shown(self.bands)),
             ("diffuse", _) => format!("albedo {}", shown(self.bands)),
             _ => format!("reflectance {}", shown(self.bands)),
         }

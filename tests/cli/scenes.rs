@@ -38,7 +38,7 @@ fn a_description_holds_what_is_in_the_file() {
     let ball = &scene["objects"][0];
     assert_eq!([&ball["name"], &ball["shape"], &ball["material"]], ["ball", "sphere", "glass"]);
     assert_eq!(ball["triangles"], serde_json::Value::Null);
-    assert_eq!(scene["materials"][0]["ior"], 1.5);
+    assert_eq!(scene["materials"][0]["ior"], serde_json::json!([1.5, 1.5, 1.5]));
     let cameras: Vec<_> = crate::column(&scene["cameras"], "name");
     assert_eq!(cameras, ["main", "region"]);
 }
