@@ -53,7 +53,11 @@ fn without_a_driver_it_says_so_and_which_variable_hides_it() {
     let (report, ran) = doctor(&[("VK_DRIVER_FILES", NOWHERE), ("VK_ICD_FILENAMES", NOWHERE)]);
     assert_eq!(ran.code, Some(NO_DEVICE), "{}", ran.err);
     assert!(ran.err.contains("no device can run any method"), "{}", ran.err);
-    assert!(row(&report, "devices", "fail")["remedy"].as_str().unwrap().contains("mesa-vulkan-drivers"));
+    let remedy = row(&report, "devices", "fail")["remedy"].as_str().unwrap();
+    assert!(
+        remedy.contains("unset VK_DRIVER_FILES, VK_ICD_FILENAMES") && remedy.contains("mesa-vulkan-drivers"),
+        "{remedy}"
+    );
     assert!(row(&report, "VK_DRIVER_FILES", "warn")["found"].as_str().unwrap().contains("nothing is at"));
     row(&report, "Vulkan loader", "ok");
     row(&report, "shader compiler", "ok");

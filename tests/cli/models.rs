@@ -81,3 +81,27 @@ fn without_any_folder_the_variable_is_named() {
     let ran = Ran::from(command.output().unwrap());
     assert!(ran.code == Some(2) && ran.err.contains("no models folder; set NEPHROID_MODELS"), "{}", ran.err);
 }
+
+/// The script and the program each read the environment: they must come to one folder.
+#[cfg(unix)]
+#[test]
+fn the_script_that_fills_the_folder_means_the_same_one() {
+    const NAMES: [&str; 3] = ["NEPHROID_MODELS", "XDG_DATA_HOME", "HOME"];
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/fetch-models");
+    for (folders, at) in [
+        (["/a", "/b", "/c"], "/a"),
+        (["", "/b", "/c"], "/b/nephroid/models"),
+        (["", "b", "/c"], "/c/.local/share/nephroid/models"),
+        (["", "", "/c"], "/c/.local/share/nephroid/models"),
+    ] {
+        let environment = || NAMES.into_iter().zip(folders);
+        let list =
+            std::process::Command::new(&script).arg("--list").envs(environment()).output().expect("bash is there");
+        let list = String::from_utf8(list.stdout).unwrap();
+        assert!(list.starts_with(&format!("models folder: {at}\n")) && list.contains("dragon"), "{list}");
+        let mut command = program();
+        command.args(["plan", "bunny", "--set", "scene.objects.bunny.file=model:none"]).envs(environment());
+        let ran = Ran::from(command.output().unwrap());
+        assert!(ran.err.contains(&format!("a model in {at},")), "{}", ran.err);
+    }
+}

@@ -7,6 +7,10 @@ use crate::{
     methods,
 };
 
+/// Variables that say which drivers are looked at.
+const DRIVERS: [&str; 4] =
+    ["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"];
+
 /// Also says whether any device runs any method.
 pub fn rows() -> (Vec<Row>, bool) {
     let devices = match gpu::list_devices() {
@@ -27,8 +31,16 @@ pub fn rows() -> (Vec<Row>, bool) {
     (rows, any)
 }
 
+/// A variable may hide the drivers that are there.
 fn none(error: &GpuError) -> Row {
-    Row::of_error("devices", error, Verdict::Fail, "install a driver (scripts/setup brings a software device)")
+    let remedy = "install a driver (scripts/setup brings a software device)";
+    let mut row = Row::of_error("devices", error, Verdict::Fail, remedy);
+    let set: Vec<_> =
+        DRIVERS.into_iter().filter(|name| std::env::var_os(name).is_some_and(|v| !v.is_empty())).collect();
+    if !set.is_empty() {
+        row.remedy = format!("unset {}, which may hide drivers; else {}", set.join(", "), row.remedy);
+    }
+    row
 }
 
 /// `hardware`: the machine has a device that is not software. Also says whether a method runs on this one.
