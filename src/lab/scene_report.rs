@@ -1,5 +1,7 @@
 //! What is in a scene: enough to choose it, and to know what its pictures will show.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use serde::Serialize;
 
@@ -53,10 +55,9 @@ struct ObjectRow {
 struct MaterialRow {
     name: String,
     kind: &'static str,
-    /// Of each band.
-    ior: Option<[f64; 3]>,
-    /// Albedo, reflectance, or absorption in 1/m.
-    bands: [f64; 3],
+    /// By name, its unit included; of each band.
+    #[serde(flatten)]
+    values: BTreeMap<&'static str, [f64; 3]>,
 }
 
 #[derive(Debug, Serialize)]
@@ -134,20 +135,20 @@ impl ObjectRow {
 
 impl MaterialRow {
     fn new(material: &Material) -> Self {
-        let (kind, ior, bands) = match material.kind {
-            MaterialKind::Diffuse { albedo } => ("diffuse", None, albedo),
-            MaterialKind::Dielectric { ior, absorption } => ("dielectric", Some(ior), absorption),
-            MaterialKind::Mirror { reflectance } => ("mirror", None, reflectance),
+        let (kind, values) = match material.kind {
+            MaterialKind::Diffuse { albedo } => ("diffuse", vec![("albedo", albedo)]),
+            MaterialKind::Dielectric { ior, absorption } => {
+                ("dielectric", vec![("ior", ior), ("absorption_per_m", absorption)])
+            }
+            MaterialKind::Mirror { reflectance } => ("mirror", vec![("reflectance", reflectance)]),
+            MaterialKind::Conductor { eta, k } => ("conductor", vec![("eta", eta), ("k", k)]),
         };
-        Self { name: material.name.clone(), kind, ior, bands }
+        Self { name: material.name.clone(), kind, values: values.into_iter().collect() }
     }
 
     fn text(&self) -> String {
-        match (self.kind, self.ior) {
-            ("dielectric", Some(ior)) => format!("index {}, absorption {} 1/m", shown(ior), shown(self.bands)),
-            ("diffuse", _) => format!("albedo {}", shown(self.bands)),
-            _ => format!("reflectance {}", shown(self.bands)),
-        }
+        let value = |(name, bands): (&&str, &[f64; 3])| format!("{} {}", name.replace('_', " "), shown(*bands));
+        self.values.iter().map(value).collect::<Vec<_>>().join(", ")
     }
 }
 
