@@ -127,10 +127,10 @@ fn stopped_by_the_clock_it_writes_and_goes_on() {
 fn what_cannot_be_done_is_said() {
     let folder = tempfile::tempdir().unwrap();
     for (line, code, words) in [
-        ("truth glass-sphere --camera nowhere", 2, "the scene has: main, region"),
+        ("truth glass-sphere --camera nowhere", 2, "choose one of `main`, `region`"),
         ("truth glass-sphere --until mse=1", 2, "relmse=X"),
         ("truth glass-sphere --paths some", 2, "reflect-1"),
-        ("truth glass-sphere --estimator guess", 2, "photons or cells"),
+        ("truth glass-sphere --estimator guess", 2, "choose one of `photons`, `cells`"),
         ("truth glass-sphere --set light.side=4", 2, "scene.PATH=VALUE"),
         ("truth nothing-of-the-kind", 2, "nothing-of-the-kind"),
     ] {

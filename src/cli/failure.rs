@@ -6,6 +6,7 @@ use crate::{
     gpu::GpuError,
     image::ImageError,
     lab::{CompareError, LabError},
+    names::NoSuch,
     passes::PlanError,
     renderer::RenderError,
     scene::{Place, SceneError},
@@ -45,6 +46,11 @@ impl Failure {
         Self { code: THRESHOLD, error: error.into() }
     }
 
+    /// Nothing here can do it.
+    pub(super) fn no_device(error: impl Into<anyhow::Error>) -> Self {
+        Self { code: NO_DEVICE, error: error.into() }
+    }
+
     /// The process's exit code.
     pub fn code(&self) -> ExitCode {
         ExitCode::from(self.code)
@@ -60,6 +66,12 @@ impl fmt::Display for Failure {
 
 impl From<SettingError> for Failure {
     fn from(error: SettingError) -> Self {
+        Self::usage(error)
+    }
+}
+
+impl From<NoSuch> for Failure {
+    fn from(error: NoSuch) -> Self {
         Self::usage(error)
     }
 }
@@ -85,7 +97,7 @@ impl From<RenderError> for Failure {
             RenderError::Lacks { .. } => NO_DEVICE,
             RenderError::Gpu(NoDevice | NoLoader(_) | NoSuchDevice { .. } | Unsuitable { .. }) => NO_DEVICE,
             RenderError::Gpu(NoCapture(_) | TooLarge { .. }) => USAGE,
-            RenderError::Unknown { .. } | RenderError::Plan(PlanError::Refused { .. }) => USAGE,
+            RenderError::Unknown(_) | RenderError::Plan(PlanError::Refused { .. }) => USAGE,
             RenderError::Gpu(_) | RenderError::Plan(PlanError::Accel(_)) => FAILED,
         };
         Self { code, error: error.into() }

@@ -14,7 +14,7 @@ mod truth;
 
 use std::time::Instant;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 pub use failure::Failure;
 
@@ -41,10 +41,14 @@ enum Command {
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
     Devices(args::ListArgs),
+    /// Look at loader, layers, devices, compiler and folders: what is there, what is missing, and what to do about it
+    Doctor(args::ListArgs),
     /// List methods and settings, with units, defaults and ranges
     Methods(args::ListArgs),
-    /// List the shipped scenes, or print one
+    /// List the shipped scenes, or say what is in one
     Scenes(args::ScenesArgs),
+    /// Print a script that completes commands and options in a shell
+    Completions(args::CompletionsArgs),
 }
 
 impl Cli {
@@ -57,8 +61,17 @@ impl Cli {
             Command::Truth(args) => truth::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
+            Command::Doctor(args) => list::doctor(&args),
             Command::Methods(args) => list::methods(&args),
             Command::Scenes(args) => list::scenes(&args),
+            Command::Completions(args) => completions(args.shell),
         }
     }
+}
+
+/// Written to memory first: the generator panics where its writer fails.
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "nephroid", &mut script);
+    output::print(&script)
 }

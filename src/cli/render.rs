@@ -6,7 +6,7 @@ use std::{
     time::Instant,
 };
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 
 use super::{
     Failure,
@@ -77,15 +77,8 @@ fn measure(
 }
 
 fn check_dumps(names: &[String], plan: &Plan) -> Result<(), Failure> {
-    let known = || plan.images.iter().map(|i| &i.name).chain(plan.buffers.iter().map(|b| &b.name));
-    match names.iter().find(|name| !known().any(|k| k == *name)) {
-        None => Ok(()),
-        Some(name) => {
-            let all: Vec<_> = known().map(String::as_str).collect();
-            let all = all.join(", ");
-            Err(Failure::usage(anyhow!("--dump {name}: the plan has no such image or buffer; it has: {all}")))
-        }
-    }
+    let check = |name: &String| renderer::resource(plan, name).map(drop);
+    names.iter().try_for_each(check).context("--dump").map_err(Failure::usage)
 }
 
 /// What does not fit is said with the options that make it as large as it is.

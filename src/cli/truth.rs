@@ -8,7 +8,6 @@ use std::{
     time::Instant,
 };
 
-use anyhow::anyhow;
 use clap::Args;
 use std::io::{ErrorKind, Write};
 
@@ -90,7 +89,7 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     }
     let (Some(scene), Some(out)) = (&args.scene, &args.out) else { return Ok(()) };
     let scene = Scene::load(scene, &args.set)?;
-    let camera = camera(&scene, &args.camera)?;
+    let camera = scene.camera(&args.camera)?;
     let noise = args.until.or(args.photons.is_none().then_some(DEFAULT_NOISE));
     let goal = Goal { photons: args.photons, noise };
     let paths = args.paths.unwrap_or(scene.paths);
@@ -107,11 +106,6 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     let partial = Partial { file: partial(out), key: task.sums_key(&scene) };
     let before = partial.before(args.resume)?;
     make(args, (&scene, camera, &task), &partial, before, (&store, out))
-}
-
-fn camera<'a>(scene: &'a Scene, name: &str) -> Result<&'a Camera, Failure> {
-    let known = || scene.cameras.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-    scene.cameras.get(name).ok_or_else(|| Failure::usage(anyhow!("--camera {name}: the scene has: {}", known())))
 }
 
 fn make(

@@ -19,7 +19,8 @@ use super::{
     pipeline::PipelineCache,
 };
 
-const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
+/// The layer of `--validation`.
+pub(super) const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 /// How to open a device.
 #[derive(Clone, Debug, Default)]

@@ -14,12 +14,14 @@ pub enum GpuError {
     )]
     NoDevice,
     /// The asked-for device is not there.
-    #[error("no device matches '{asked}'; present: {present}")]
+    #[error("no device matches '{asked}'; present: {present}{near}")]
     NoSuchDevice {
         /// What the user asked for.
         asked: String,
         /// The devices that are there.
         present: String,
+        /// What was perhaps meant, as a question.
+        near: String,
     },
     /// The device lacks something that every frame needs.
     #[error(

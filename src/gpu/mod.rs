@@ -10,6 +10,7 @@ mod capture;
 mod choose;
 mod device;
 mod error;
+mod loader;
 mod memory;
 mod messages;
 mod pipeline;
@@ -24,6 +25,7 @@ pub use access::Access;
 pub use choose::{DeviceChoice, DeviceInfo, Feature, list_devices};
 pub use device::{Calls, Gpu, GpuOptions};
 pub use error::GpuError;
+pub use loader::{LayerInfo, LoaderInfo, inspect_loader, try_validation};
 pub use memory::{Buffer, Format, Image};
 pub use plan::{
     Binding, Blend, BufferDecl, BufferId, Depth, Draw, ImageDecl, ImageId, LeftOut, Lifetime, PassBuilder, PassDecl,
@@ -31,5 +33,5 @@ pub use plan::{
 };
 pub use program::{Program, Reused};
 pub use reflect::{BlockMember, Reflection};
-pub use shader::{ShaderKind, Sources};
+pub use shader::{ShaderKind, Sources, spirv_version};
 pub use timer::{FrameTimes, PassCounters};

@@ -6,6 +6,7 @@ use super::CompareError;
 use crate::{
     image::{Layer, Layers, Provenance},
     metrics::Correlation,
+    names::NoSuch,
 };
 
 /// The camera that sees the region and nothing else.
@@ -35,8 +36,7 @@ impl Picture {
     pub(super) fn layer(&self, name: &str) -> Result<&Layer, CompareError> {
         self.layers.get(name).ok_or_else(|| CompareError::Layer {
             file: self.file.clone(),
-            layer: name.to_owned(),
-            known: self.layers.iter().map(Layer::name).collect::<Vec<_>>().join(", "),
+            reason: NoSuch::new("layer", name, self.layers.iter().map(Layer::name)),
         })
     }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The rooms, floor by floor from the ground. Those of the ground floor may lean on each other, never in a circle.
 pub const FLOORS: [&[&str]; 7] = [
-    &["optics", "view", "image", "metrics", "stats", "store", "settings", "scene", "whole"],
+    &["names", "places", "optics", "view", "image", "metrics", "stats", "store", "settings", "scene", "whole"],
     &["gpu"],
     &["passes"],
     &["methods", "truth"],

@@ -13,6 +13,7 @@ pub use counts::{CHUNKS, Counts, PARTS};
 pub use sums::{BANDS, Sums};
 
 use super::{Goal, Standing};
+use crate::names::NoSuch;
 
 /// Which way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,13 +35,11 @@ impl fmt::Display for Estimator {
 }
 
 impl FromStr for Estimator {
-    type Err = String;
+    type Err = NoSuch;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        [Self::Photons, Self::Cells]
-            .into_iter()
-            .find(|estimator| estimator.to_string() == text)
-            .ok_or_else(|| format!("`{text}` is no estimator: use photons or cells"))
+    fn from_str(text: &str) -> Result<Self, NoSuch> {
+        let found = [Self::Photons, Self::Cells].into_iter().find(|estimator| estimator.to_string() == text);
+        found.ok_or_else(|| NoSuch::new("estimator", text, ["photons", "cells"]))
     }
 }
 
