@@ -140,6 +140,27 @@ impl View {
         })
     }
 
+    /// The part of a perspective view's window that a cone from its origin touches (unit axis, half angle below 90°);
+    /// `None` if they are apart.
+    pub fn within_cone(mut self, axis: DVec3, half: f64) -> Option<Self> {
+        for (k, side) in [self.right, self.up].into_iter().enumerate() {
+            // In the plane of `forward` and `side` the cone is the outline of a circle of radius sin(half) at `flat`.
+            let flat = DVec2::new(axis.dot(side), axis.dot(self.forward));
+            let (middle, reach) = (flat.x.atan2(flat.y), half.sin() / flat.length());
+            if reach >= 1.0 {
+                continue; // the cone goes all round
+            }
+            let (low, high) = (middle - reach.asin(), middle + reach.asin());
+            if low >= self.high[k].atan() || high <= self.low[k].atan() {
+                return None;
+            }
+            // Within the window's angles, which have tangents.
+            self.low[k] = low.max(self.low[k].atan()).tan();
+            self.high[k] = high.min(self.high[k].atan()).tan();
+        }
+        Some(self)
+    }
+
     /// An orthographic view of a rectangle (half edges `u`, `v`) along its normal, from the lit side, and of margins
     /// beyond its sides (−u, −v and +u, +v; metres). It sees all of `everything`, before and behind the rectangle.
     pub fn of_rectangle(center: DVec3, u: DVec3, v: DVec3, margins: [DVec2; 2], everything: &Extent) -> Self {
@@ -293,6 +314,21 @@ mod tests {
                 .filter(|p| p.min_element() >= 0.0 && p.max_element() <= 1.0);
             assert_eq!(seen.count(), 1);
         }
+    }
+
+    #[test]
+    fn a_cone_narrows_the_window_to_what_it_touches() {
+        let view = View::cube(DVec3::ZERO, &ball(DVec3::ZERO, 9.0))[5]; // along -z
+        let half = 0.1f64;
+        let along = view.within_cone(DVec3::NEG_Z, half).unwrap();
+        assert!((along.high - DVec2::splat(half.tan())).length() < 1e-12 && (along.low + along.high).length() < 1e-12);
+        let aside = view.within_cone(DVec3::new(0.6, 0.0, -0.8), half).unwrap();
+        let (low, high) = (aside.low.x.atan(), aside.high.x.atan());
+        let expected = 0.75f64.atan();
+        assert!((low - expected + half).abs() < 1e-12 && (high - expected - half).abs() < 1e-12, "{low} {high}");
+        let reaches = view.within_cone(DVec3::new(0.72, 0.0, -0.694), 0.3).unwrap();
+        assert!((reaches.high.x - 1.0).abs() < 1e-12, "the window ends before the cone");
+        assert!(view.within_cone(DVec3::new(0.96, 0.0, -0.28), half).is_none());
     }
 
     #[test]

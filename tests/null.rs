@@ -68,6 +68,7 @@ impl Null<'_> {
                 direct_parallel(direction, self.region.normal(), irradiance[0])
             }
             LightKind::Point { position, intensity } => direct_point(position, intensity[0], p, self.region.normal()),
+            LightKind::Spot { .. } => unreachable!("spots vanish in `lights`"),
         }
     }
 
@@ -75,7 +76,7 @@ impl Null<'_> {
     fn travel(&self, p: DVec3) -> DVec3 {
         match self.light {
             LightKind::Directional { direction, .. } => direction,
-            LightKind::Point { position, .. } => (p - position).normalize(),
+            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => (p - position).normalize(),
         }
     }
 

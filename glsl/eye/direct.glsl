@@ -20,7 +20,8 @@ vec3 direct_irradiance(Surface s, vec3 d) {
             towards = safe_normalize(way, vec3(0.0));
             reach = dot(way, towards);
             if (!(reach > 0.0)) continue; // the light is at the point: it has no direction
-            facing = light.power / max(reach * reach, 1e-30) * medium_transmits(light.medium, reach);
+            facing = light.power * light_share(light, -towards);
+            facing *= medium_transmits(light.medium, reach) / max(reach * reach, 1e-30);
         }
         float cosine = dot(geometric, towards);
         if (!(cosine > 0.0)) continue;

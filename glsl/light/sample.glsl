@@ -21,7 +21,7 @@ LightSample light_sample(ivec2 texel) {
     view_ray(v, (vec2(texel) + 0.5) / vec2(push.size), s.origin, s.direction);
     s.footprint = v.perspective != 0u ? view_texel_solid_angle(v, push.size, texel)
                                       : view_texel_cross_section(v, push.size);
-    s.flux = light.power * s.footprint;
+    s.flux = light.power * (light_share(light, s.direction) * s.footprint);
     s.medium = light.medium;
     return s;
 }

@@ -62,6 +62,7 @@ bool is_emitted(LightSample light, bool found, Hit first) {
 Photon trace_photon(LightSample light) {
     vec3 zero = vec3(0.0);
     Photon p = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
+    if (!any(greaterThan(light.flux, zero))) return p; // beyond a spot's edge
     vec3 o = light.origin, d = light.direction;
     Hit hit;
     bool found = trace(o, d, FAR, MASK_ALL, hit);

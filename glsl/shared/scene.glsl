@@ -2,7 +2,7 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
-// The host defines NO_SPHERES, NO_QUADS or NO_MESHES where a scene has none: their code is then not compiled.
+// The host defines NO_SPHERES, NO_QUADS, NO_MESHES or NO_SPOTS where a scene has none: their code is then not compiled.
 
 // A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
 // primitives from `first`. All indices are absolute. The tree over the instances has its root at 0.
@@ -48,9 +48,12 @@ const uint MATERIAL_MIRROR = 2u;
 
 struct Light {
     uint kind;
-    vec3 vector; // directional: unit direction of travel; point: position
-    vec3 power;  // directional: irradiance of a plane facing it, W/m^2; point: intensity, W/sr
+    vec3 vector; // directional: unit direction of travel; point, spot: position
+    vec3 power;  // directional: irradiance of a plane facing it, W/m^2; point, spot: intensity, W/sr (on the axis)
     uint medium; // the material that a point light is in, or MEDIUM_AIR
+    vec3 axis;   // spot: unit
+    float inner; // 1 - cosine of the half angle up to which all of the power goes; above 2: everywhere
+    float outer; // 1 - cosine of the half angle beyond which none does
 };
 
 const uint LIGHT_DIRECTIONAL = 0u;
@@ -64,6 +67,21 @@ layout(set = 0, binding = 2, scalar) readonly buffer SceneNormals { TriangleNorm
 layout(set = 0, binding = 3, scalar) readonly buffer SceneInstances { Instance data[]; } scene_instances;
 layout(set = 0, binding = 4, scalar) readonly buffer SceneMaterials { Material data[]; } scene_materials;
 layout(set = 0, binding = 5, scalar) readonly buffer SceneLights { Light data[]; } scene_lights;
+
+// Share of a light's power that goes along unit d: of a spot, a smooth step between its two half angles. The height
+// 1 - cosine by the difference of the vectors keeps its digits in narrow beams.
+float light_share(Light light, vec3 d) {
+#ifdef NO_SPOTS
+    return 1.0;
+#else
+    vec3 beside = d - light.axis;
+    float height = 0.5 * dot(beside, beside);
+    if (height <= light.inner) return 1.0;
+    if (!(height < light.outer)) return 0.0;
+    float t = (light.outer - height) / (light.outer - light.inner);
+    return t * t * (3.0 - 2.0 * t);
+#endif
+}
 
 // Classes of objects a ray asks for.
 const uint MASK_DIFFUSE = 1u;

@@ -149,6 +149,11 @@ pub fn parse_set(text: &str) -> Result<(String, String), String> {
     }
 }
 
+pub fn parse_seconds(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|s: &f64| s.is_finite() && *s >= 0.0);
+    value.ok_or_else(|| "expected a number of seconds".to_owned())
+}
+
 fn parse_time(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|t: &f64| t.is_finite()).ok_or_else(|| "expected a number of seconds".to_owned())
 }

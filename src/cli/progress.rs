@@ -1,8 +1,13 @@
-//! A bar on stderr, on a terminal alone.
+//! Bars on stderr, on a terminal alone.
+
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::lab::{Experiment, Step};
+use crate::{
+    lab::{Experiment, Step},
+    truth::Standing,
+};
 
 /// Steps that are no frames: preparing, counting, reading.
 const OTHERS: u64 = 3;
@@ -32,5 +37,41 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// Of a truth: how far, how noisy, how long still.
+pub struct TruthProgress {
+    bar: ProgressBar,
+    max_seconds: Option<f64>,
+    /// Photons before this run.
+    before: u64,
+    started: Instant,
+}
+
+impl TruthProgress {
+    const STEPS: u64 = 1000;
+
+    pub fn new(max_seconds: Option<f64>, before: u64) -> Self {
+        let style = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}");
+        let bar = ProgressBar::new(Self::STEPS).with_message("direct light");
+        let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar, max_seconds, before, started: Instant::now() }
+    }
+
+    pub fn at(&self, standing: &Standing) {
+        let (done, missing) = (standing.photons as f64, standing.missing);
+        let seconds = self.started.elapsed().as_secs_f64();
+        let made = (standing.photons - self.before).max(1) as f64;
+        let limit = self.max_seconds.map_or(f64::INFINITY, |most| (most - seconds).max(0.0));
+        let left = (missing * seconds / made).min(limit);
+        self.bar.set_position((done / (done + missing) * Self::STEPS as f64) as u64);
+        self.bar.set_message(format!("{done:.3e} photons, noise relmse {:.2e}, {left:.0} s left", standing.noise));
+    }
+}
+
+impl Drop for TruthProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }

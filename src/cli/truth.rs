@@ -10,30 +10,26 @@ use std::{
 
 use anyhow::anyhow;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 
 use super::{
     Failure,
-    args::{parse_set, parse_size},
+    args::{parse_seconds, parse_set, parse_size},
     output::{print, say},
+    progress::TruthProgress,
     signals,
 };
 use crate::{
     image::Layers,
-    lab::LabError,
+    lab::{LabError, SUMS, Sparing, TRUTHS},
     scene::{Camera, PathClass, Scene},
     store::{Key, Store},
     truth::{Estimator, Goal, Run, Standing, Task, trace::Space},
     whole::write_whole,
 };
 
-/// What finished truths are kept as in the store.
-const KIND: &str = "truth";
 /// The noise asked for if nothing else is.
 const DEFAULT_NOISE: f64 = 1e-4;
-/// The time between two checkpoints is this many times what writing one takes.
-const SPARING: u32 = 20;
 
 #[derive(Args)]
 pub struct TruthArgs {
@@ -74,10 +70,10 @@ pub struct TruthArgs {
     /// Any value of the scene as scene.PATH=VALUE; repeatable
     #[arg(long, value_name = "scene.PATH=VALUE", value_parser = parse_scene_set)]
     set: Vec<(String, String)>,
-    /// List the finished truths in the store
+    /// List the finished truths in the store, those of `compare --reference auto` too
     #[arg(long, exclusive = true)]
     list: bool,
-    /// Remove the finished truths from the store
+    /// Remove the finished truths from the store, and what `compare --reference auto` keeps to go on from
     #[arg(long, exclusive = true)]
     clear: bool,
 }
@@ -88,8 +84,9 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
         return print(listing(&store).as_bytes());
     }
     if args.clear {
-        let removed = store.clear(KIND)?;
-        return print(format!("{removed} removed\n").as_bytes());
+        let (truths, sums) = (store.clear(TRUTHS)?, store.clear(SUMS)?);
+        let sums = if sums > 0 { format!(", and the sums of {sums}") } else { String::new() };
+        return print(format!("{truths} removed{sums}\n").as_bytes());
     }
     let (Some(scene), Some(out)) = (&args.scene, &args.out) else { return Ok(()) };
     let scene = Scene::load(scene, &args.set)?;
@@ -100,7 +97,7 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     let (estimator, camera_name) = (args.estimator, args.camera.clone());
     let task = Task { estimator, paths, camera: camera_name, size: args.size, seed: args.seed, goal };
     let key = task.key(&scene);
-    if let Some(bytes) = store.get(KIND, &key) {
+    if let Some(bytes) = store.get(TRUTHS, &key) {
         write_whole(out, |file| file.write_all(&bytes))?;
         say(&format!("written: {}, made before", out.display()));
         return Ok(());
@@ -126,16 +123,14 @@ fn make(
     if args.resume {
         say(&partial.read(&mut run));
     }
-    let progress = Progress::new(args.max_seconds, run.standing().photons);
-    let (mut failed, mut written) = (None, None::<(Instant, std::time::Duration)>);
+    let progress = TruthProgress::new(args.max_seconds, run.standing().photons);
+    let (mut failed, mut sparing) = (None, Sparing::default());
     let standing = run.advance(rayon::current_num_threads(), |run, standing| {
         progress.at(&standing);
         let late = args.max_seconds.is_some_and(|most| started.elapsed().as_secs_f64() >= most);
         let end = standing.finished || late || stop.load(Relaxed);
-        if end || written.is_none_or(|(at, took)| at.elapsed() >= SPARING * took) {
-            let begun = Instant::now();
-            failed = partial.write(run).err();
-            written = Some((Instant::now(), begun.elapsed()));
+        if end || sparing.is_due() {
+            failed = sparing.keep(|| partial.write(run)).err();
         }
         if end || failed.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
@@ -150,7 +145,7 @@ fn make(
     let bytes = run.layers()?.to_exr(&run.provenance())?;
     write_whole(out, |file| file.write_all(&bytes))?;
     if standing.finished {
-        store.put(KIND, &partial.key, &bytes);
+        store.put(TRUTHS, &partial.key, &bytes);
         let _ = fs::remove_file(&partial.file); // of no use to anyone now
     }
     say(&summary(&standing, out, started));
@@ -202,59 +197,18 @@ impl Partial {
 
 fn listing(store: &Store) -> String {
     let row = |key: &Key| {
-        let (_, about) = Layers::from_exr(&store.get(KIND, key)?).ok()?;
+        let about = Layers::provenance_of_exr(&store.get(TRUTHS, key)?).ok()?;
         let of = |name: &str| about.get(name).map_or("?", String::as_str).to_owned();
         let names = ["scene.name", "estimator", "paths", "camera", "size", "seed", "photons", "noise.relmse"];
         Some(names.map(of).join("  "))
     };
-    let rows = store.list(KIND).into_iter().filter_map(|e| Some(format!("{}  {} bytes\n", row(&e.key)?, e.bytes)));
+    let rows = store.list(TRUTHS).into_iter().filter_map(|e| Some(format!("{}  {} bytes\n", row(&e.key)?, e.bytes)));
     "scene  estimator  paths  camera  size  seed  photons  noise\n".to_owned() + &rows.collect::<String>()
-}
-
-/// A bar on stderr, on a terminal alone: how far, how noisy, how long still.
-struct Progress {
-    bar: ProgressBar,
-    max_seconds: Option<f64>,
-    /// Photons before this run.
-    before: u64,
-    started: Instant,
-}
-
-impl Progress {
-    const STEPS: u64 = 1000;
-
-    fn new(max_seconds: Option<f64>, before: u64) -> Self {
-        let style = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}");
-        let bar = ProgressBar::new(Self::STEPS).with_message("direct light");
-        let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self { bar, max_seconds, before, started: Instant::now() }
-    }
-
-    fn at(&self, standing: &Standing) {
-        let (done, missing) = (standing.photons as f64, standing.missing);
-        let seconds = self.started.elapsed().as_secs_f64();
-        let made = (standing.photons - self.before).max(1) as f64;
-        let limit = self.max_seconds.map_or(f64::INFINITY, |most| (most - seconds).max(0.0));
-        let left = (missing * seconds / made).min(limit);
-        self.bar.set_position((done / (done + missing) * Self::STEPS as f64) as u64);
-        self.bar.set_message(format!("{done:.3e} photons, noise relmse {:.2e}, {left:.0} s left", standing.noise));
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
 }
 
 fn parse_noise(text: &str) -> Result<f64, String> {
     let value = text.strip_prefix("relmse=").and_then(|x| x.parse().ok());
     value.filter(|x: &f64| x.is_finite() && *x > 0.0).ok_or_else(|| "expected relmse=X with X above 0".to_owned())
-}
-
-fn parse_seconds(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|s: &f64| s.is_finite() && *s >= 0.0);
-    value.ok_or_else(|| "expected a number of seconds".to_owned())
 }
 
 /// Settings other than the scene's mean nothing to the truth.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::compare::LEAST_JUDGED;
-use crate::image::ImageError;
+use crate::{image::ImageError, scene::SceneError};
 
 /// Why two pictures cannot be compared.
 #[derive(Debug, thiserror::Error)]
@@ -38,6 +38,18 @@ pub enum CompareError {
          again"
     )]
     Yardstick { image: String, reference: String },
+    #[error(
+        "{image} does not say what scene it shows (attributes nephroid.scene.name, .file, .hash and .overrides): name a \
+         file as its --reference"
+    )]
+    Unsaid { image: String },
+    #[error("{image}: its scene cannot be loaded again: {reason}; or name a file as its --reference")]
+    Scene { image: String, reason: Box<SceneError> },
+    #[error(
+        "{image}: its scene, {scene}, has changed since: {what}; render the image again, or name a file as its \
+         --reference"
+    )]
+    Changed { image: String, scene: String, what: String },
 }
 
 fn shown([width, height]: &[usize; 2]) -> String {

@@ -21,6 +21,7 @@ pub struct CompareReport {
 #[derive(Debug, Serialize)]
 struct Row {
     image: String,
+    reference: String,
     layer: String,
     pixels: usize,
     masked: usize,
@@ -39,10 +40,11 @@ pub struct Limit {
 }
 
 impl CompareReport {
-    /// Of pictures compared with one reference.
+    /// Of pictures compared, each with its own reference; `reference` is what was asked for.
     pub fn new(reference: &str, comparisons: &[Comparison]) -> Self {
         let row = |c: &Comparison| Row {
             image: c.image.clone(),
+            reference: c.reference.clone(),
             layer: c.layer.clone(),
             pixels: c.pixels,
             masked: c.masked,
@@ -112,7 +114,12 @@ fn figure(value: f64) -> String {
 
 impl Report for CompareReport {
     fn heading(&self) -> Vec<String> {
-        vec![format!("against {}", self.reference)]
+        match self.results.as_slice() {
+            [first, rest @ ..] if rest.iter().any(|row| row.reference != first.reference) => {
+                self.results.iter().map(|row| format!("{} against {}", row.image, row.reference)).collect()
+            }
+            rows => rows.first().map(|row| format!("against {}", row.reference)).into_iter().collect(),
+        }
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -129,7 +136,11 @@ impl Report for CompareReport {
             let bound = |bound: Option<f64>| bound.map_or(Cell::None, |bound| Cell::Real(bound, 0));
             vec![Cell::Real(measure.value, 0), bound(measure.low), bound(measure.high), bound(measure.truth_noise)]
         };
-        vec![self.table(plain)]
+        let mut table = self.table(plain);
+        table.columns.push("reference");
+        let references = self.results.iter().flat_map(|row| MEASURES.map(|_| Cell::text(&row.reference)));
+        table.rows.iter_mut().zip(references).for_each(|(row, reference)| row.push(reference));
+        vec![table]
     }
 
     fn notes(&self) -> Vec<String> {

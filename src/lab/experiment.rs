@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use super::CompareError;
 use crate::{
     gpu::{FrameTimes, PassCounters},
     image::{ImageError, Layers},
@@ -16,6 +17,9 @@ pub enum LabError {
     /// Planning, preparing or rendering.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// Pictures that cannot be judged.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
     /// A picture that cannot be encoded.
     #[error(transparent)]
     Image(#[from] ImageError),

@@ -65,12 +65,12 @@ impl Incident {
             LightKind::Directional { direction, irradiance } => {
                 Self { facing: mean(irradiance), towards: -direction, reach: f64::INFINITY }
             }
-            LightKind::Point { position, intensity } => {
+            LightKind::Point { position, intensity } | LightKind::Spot { position, intensity, .. } => {
                 let way = position - point;
-                let reach = way.length();
+                let (reach, towards) = (way.length(), way.normalize_or_zero());
                 // A light on the very point lights it from nowhere: the midpoint rule leaves it out.
-                let facing = if reach > 0.0 { mean(intensity) / (reach * reach) } else { 0.0 };
-                Self { facing, towards: way.normalize_or_zero(), reach }
+                let share = if reach > 0.0 { light.kind.share(-towards) / (reach * reach) } else { 0.0 };
+                Self { facing: mean(intensity) * share, towards, reach }
             }
         }
     }

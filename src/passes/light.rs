@@ -3,12 +3,14 @@
 //!
 //! Cost: one dispatch of N² invocations a view, bound by traversal; 32 bytes written a photon for `maps`.
 
+use glam::DVec3;
+
 use super::{PlanError, extents, scene::SceneBuffers};
 use crate::{
     gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
-    scene::{LightKind, PathClass, Region, Scene},
+    scene::{Beam, LightKind, PathClass, Region, Scene},
     settings::{Choice, Setting, Settings, Whole},
-    view::View,
+    view::{Extent, View},
 };
 
 /// Photons a side of an emission view.
@@ -142,27 +144,45 @@ pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Resul
         content.join(&extents::of_region(receiver));
     }
     let mut all = Vec::new();
-    for (light, lamp) in scene.lights.iter().enumerate() {
-        match lamp.kind {
-            LightKind::Directional { irradiance, .. } if irradiance == [0.0; 3] => {}
-            LightKind::Point { intensity, .. } if intensity == [0.0; 3] => {}
-            LightKind::Directional { direction, .. } => {
-                all.push(Emission { light, view: View::orthographic(direction, &content, &everything) });
-            }
-            LightKind::Point { position, .. } => match View::perspective(position, &content, &everything) {
-                Some(view) => all.push(Emission { light, view }),
-                None if shared => {
-                    return Err(PlanError::Refused {
-                        what: format!("light.view=shared with the light '{}'", lamp.name),
-                        reason: "no one frustum holds the objects and the receiver from there".into(),
-                        remedy: "use light.view=fitted, or move the light away from them".into(),
-                    });
+    for (light, lamp) in scene.lights.iter().enumerate().filter(|(_, lamp)| lamp.kind.power() != [0.0; 3]) {
+        let views = match lamp.kind {
+            LightKind::Directional { direction, .. } => vec![View::orthographic(direction, &content, &everything)],
+            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
+                match View::perspective(position, &content, &everything) {
+                    Some(view) => vec![view],
+                    None if shared => return Err(no_one_frustum(&lamp.name)),
+                    None => View::cube(position, &everything).to_vec(),
                 }
-                None => all.extend(View::cube(position, &everything).map(|view| Emission { light, view })),
-            },
-        }
+            }
+        };
+        let lit = |view: View| match lamp.kind {
+            LightKind::Spot { position, beam, .. } if !shared => beam_view(view, position, &beam, &content),
+            _ => Some(view),
+        };
+        all.extend(views.into_iter().filter_map(lit).map(|view| Emission { light, view }));
     }
     Ok(all)
+}
+
+fn no_one_frustum(light: &str) -> PlanError {
+    PlanError::Refused {
+        what: format!("light.view=shared with the light '{light}'"),
+        reason: "no one frustum holds the objects and the receiver from there".into(),
+        remedy: "use light.view=fitted, or move the light away from them".into(),
+    }
+}
+
+/// What a beam lights of a view on to the content: a narrower window, or nothing.
+fn beam_view(view: View, position: DVec3, beam: &Beam, content: &Extent) -> Option<View> {
+    // A half angle beyond every direction's, or of 90° and more, bounds no window.
+    let (half, (centre, radius)) = (2.0 * (0.5 * beam.outer).min(1.0).sqrt().asin(), content.bounds());
+    let (way, distance) = (centre - position, (centre - position).length());
+    let seen = if distance > radius { (radius / distance).asin() } else { std::f64::consts::PI };
+    let aside = way.cross(beam.axis).length().atan2(way.dot(beam.axis));
+    if aside > half + seen {
+        return None;
+    }
+    if half >= std::f64::consts::FRAC_PI_2 { Some(view) } else { view.within_cone(beam.axis, half) }
 }
 
 /// Adds the photon columns that `columns` names, once for all views.

@@ -3,7 +3,7 @@
 use super::accel::{Instance, SHAPE_MESH, SHAPE_QUAD, SHAPE_SPHERE, SceneArrays};
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
-    scene::{Camera, Scene},
+    scene::{Camera, LightKind, Scene},
 };
 
 /// Vertices of the box about a sphere (`glsl/eye/gbuffer.vert`).
@@ -23,6 +23,7 @@ pub struct SceneBuffers {
     /// Whether there is any sphere, any quad.
     pub(super) has_spheres: bool,
     has_quads: bool,
+    has_spots: bool,
 }
 
 impl SceneBuffers {
@@ -40,6 +41,7 @@ impl SceneBuffers {
             lights: (!scene.lights.is_empty()).then(|| plan.upload("scene/lights", &arrays.lights)),
             has_spheres: any(SHAPE_SPHERE),
             has_quads: any(SHAPE_QUAD),
+            has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
         }
     }
 
@@ -59,6 +61,7 @@ impl SceneBuffers {
 
     /// For a pass that asks the lights; nothing where there are none.
     pub fn lights<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let pass = if self.has_spots { pass } else { pass.define("NO_SPOTS", 1) };
         match self.lights {
             Some(lights) => pass.offer("scene_lights", lights),
             None => pass,

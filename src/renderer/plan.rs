@@ -118,7 +118,7 @@ fn photon_passes(
         None => Some("no method was asked for"),
         Some(_) if scene.lights.is_empty() => Some("there is no light"),
         Some(_) if !scene.has_specular() => Some("nothing in the scene is specular"),
-        Some(_) if emissions.is_empty() => Some("no light has any power, or no specular object any surface"),
+        Some(_) if emissions.is_empty() => Some("no light with any power reaches a specular object that has a surface"),
         Some(_) => None,
     };
     let (Some(method), None) = (job.providers.surface, reason) else {

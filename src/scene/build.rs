@@ -2,9 +2,10 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Camera, CameraKind, Light, LightKind, Material, MaterialKind, PathClassError, Scene, Source,
+    Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source,
     error::SceneError,
-    file::{CameraFile, Floats, LightFile, MaterialFile, SceneFile},
+    file::{CameraFile, Floats, MaterialFile, SceneFile},
+    light::light,
     load::Files,
     locate::Key,
     object::{Meshes, object},
@@ -89,26 +90,6 @@ fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> 
             Ok(MaterialKind::Mirror { reflectance })
         }
         _ => Err(key.one_kind(&["diffuse", "dielectric", "mirror"])),
-    }
-}
-
-fn light(key: &Key, file: &LightFile, unit: f64) -> Result<LightKind, SceneError> {
-    match (&file.directional, &file.point) {
-        (Some(sun), None) => {
-            let key = key.key("directional");
-            Ok(LightKind::Directional {
-                direction: key.key("direction").direction(sun.direction)?,
-                irradiance: key.key("irradiance").strength(sun.irradiance, "an irradiance in W/m²")?,
-            })
-        }
-        (None, Some(point)) => {
-            let key = key.key("point");
-            Ok(LightKind::Point {
-                position: key.key("position").point(point.position, unit)?,
-                intensity: key.key("intensity").strength(point.intensity, "an intensity in W/sr")?,
-            })
-        }
-        _ => Err(key.one_kind(&["directional", "point"])),
     }
 }
 

@@ -148,6 +148,7 @@ pub struct MirrorFile {
 pub struct LightFile {
     pub directional: Option<DirectionalFile>,
     pub point: Option<PointFile>,
+    pub spot: Option<SpotFile>,
 }
 
 #[derive(Deserialize)]
@@ -162,6 +163,17 @@ pub struct DirectionalFile {
 pub struct PointFile {
     pub position: Floats<3>,
     pub intensity: Colour,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpotFile {
+    pub position: Floats<3>,
+    pub direction: Floats<3>,
+    pub intensity: Colour,
+    /// Degrees from the axis; without it the edge is sharp.
+    pub inner: Option<f64>,
+    pub outer: f64,
 }
 
 fn one() -> f64 {

@@ -1,8 +1,19 @@
 //! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
 
 /// Tables that say of what kind their parent is; a dotted key may leave them out.
-pub const KINDS: [&str; 10] =
-    ["dielectric", "diffuse", "directional", "mesh", "mirror", "orthographic", "pinhole", "point", "quad", "sphere"];
+pub const KINDS: [&str; 11] = [
+    "dielectric",
+    "diffuse",
+    "directional",
+    "mesh",
+    "mirror",
+    "orthographic",
+    "pinhole",
+    "point",
+    "quad",
+    "sphere",
+    "spot",
+];
 
 /// Keys that a table may have. The deserialiser judges them in the end; the test below holds the two together.
 pub fn keys(path: &[&str]) -> &'static [&'static str] {
@@ -25,7 +36,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["cameras", _] => &["pinhole", "orthographic"],
         ["objects", _] => &["material", "visible_to_camera", "sphere", "quad", "mesh"],
         ["materials", _] => &["diffuse", "dielectric", "mirror"],
-        ["lights", _] => &["directional", "point"],
+        ["lights", _] => &["directional", "point", "spot"],
         ["cameras", _, "pinhole"] => &["position", "target", "up", "hides_specular", "fov_y"],
         ["cameras", _, "orthographic"] => &["position", "target", "up", "hides_specular", "height", "width"],
         ["objects", _, "sphere"] => &["center", "radius"],
@@ -36,6 +47,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["materials", _, "mirror"] => &["reflectance"],
         ["lights", _, "directional"] => &["direction", "irradiance"],
         ["lights", _, "point"] => &["position", "intensity"],
+        ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "outer"],
         _ => &[],
     }
 }
@@ -72,5 +84,6 @@ mod tests {
         assert_eq!(keys(&["lights", ""]), known::<file::LightFile>());
         assert_eq!(keys(&["lights", "", "directional"]), known::<file::DirectionalFile>());
         assert_eq!(keys(&["lights", "", "point"]), known::<file::PointFile>());
+        assert_eq!(keys(&["lights", "", "spot"]), known::<file::SpotFile>());
     }
 }

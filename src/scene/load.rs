@@ -74,7 +74,7 @@ fn find(name_or_path: &str) -> Result<Found, SceneError> {
             &remedy,
         ));
     };
-    let file = format!("built-in scenes/{name}.toml");
+    let file = shipped::place(name);
     Ok(Found { name: name.to_owned(), file, text: text.to_owned(), files: Files::Shipped })
 }
 

@@ -15,6 +15,7 @@ mod class;
 mod error;
 mod file;
 mod format;
+mod light;
 mod load;
 mod locate;
 mod measure;
@@ -28,6 +29,7 @@ mod shipped;
 
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
+pub use light::{Beam, Light, LightKind};
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.
 #[derive(Clone, Debug)]
@@ -202,34 +204,6 @@ impl Material {
     }
 }
 
-/// A source without size.
-#[derive(Clone, Debug)]
-pub struct Light {
-    /// As in the file.
-    pub name: String,
-    /// Where its light comes from.
-    pub kind: LightKind,
-}
-
-/// Colours are one number for each of the three bands.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightKind {
-    /// Parallel light.
-    Directional {
-        /// Unit vector along which the light travels.
-        direction: DVec3,
-        /// W/m² on a plane that faces the light.
-        irradiance: [f64; 3],
-    },
-    /// The same in every direction.
-    Point {
-        /// m
-        position: DVec3,
-        /// W/sr
-        intensity: [f64; 3],
-    },
-}
-
 /// Looks along its own −Z, from `position` to `target`; `up` need not be perpendicular.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
@@ -273,6 +247,15 @@ impl Scene {
     /// The first thing wrong, with its place, its key, what was expected, what was found and what to do.
     pub fn load(name_or_path: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
         load::load(name_or_path, overrides)
+    }
+
+    /// Loads a scene again from what it said of itself: its name, [`Source::file`] and [`Source::overrides`]. Whether it
+    /// still is the same, [`Source::hash`] says.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load_again(name: &str, file: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
+        load::load(if file == shipped::place(name) { name } else { file }, overrides)
     }
 
     /// Name and title of every scene inside the program, sorted by name.

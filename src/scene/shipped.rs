@@ -22,3 +22,8 @@ pub fn title(text: &str) -> String {
     let table = text.parse::<toml::Table>().unwrap_or_default();
     table.get("title").and_then(toml::Value::as_str).unwrap_or_default().to_owned()
 }
+
+/// What stands for the path of a shipped scene.
+pub fn place(name: &str) -> String {
+    format!("built-in scenes/{name}.toml")
+}

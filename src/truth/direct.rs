@@ -26,8 +26,8 @@ type Lamp<'a> = (&'a LightKind, [f64; 3]);
 
 fn lamps<'a>(space: &Space<'a>) -> Vec<Lamp<'a>> {
     let absorption = |kind: &LightKind| {
-        let LightKind::Point { position, .. } = kind else { return [0.0; 3] };
-        match space.media(*position).innermost().map(|m| &space.scene.materials[m].kind) {
+        let Some(position) = kind.position() else { return [0.0; 3] };
+        match space.media(position).innermost().map(|m| &space.scene.materials[m].kind) {
             Some(MaterialKind::Dielectric { absorption, .. }) => *absorption,
             _ => [0.0; 3],
         }
@@ -42,10 +42,11 @@ fn irradiance(space: &Space, lamps: &[Lamp], s: &Surface, d: DVec3) -> DVec3 {
     let one = |(kind, absorption): &Lamp| {
         let (towards, reach, facing) = match kind {
             LightKind::Directional { direction, irradiance } => (-*direction, f64::INFINITY, DVec3::from(*irradiance)),
-            LightKind::Point { position, intensity } => {
+            LightKind::Point { position, intensity } | LightKind::Spot { position, intensity, .. } => {
                 let way = *position - s.p;
-                let left = DVec3::from(absorption.map(|a| transmittance(a, way.length())));
-                (way.normalize_or_zero(), way.length(), left * DVec3::from(*intensity) / way.length_squared())
+                let (towards, left) = (way.normalize_or_zero(), absorption.map(|a| transmittance(a, way.length())));
+                let intensity = DVec3::from(*intensity) * DVec3::from(left) * kind.share(-towards);
+                (towards, way.length(), intensity / way.length_squared())
             }
         };
         let cosine = normal.dot(towards);

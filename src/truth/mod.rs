@@ -7,7 +7,8 @@
 //! * [`Run`]: an estimate through a camera with its variance; direct light and the mask beside it.
 //! * [`closed`]: what is known without photons.
 //!
-//! Pixels that look at or through specular objects see no caustic here; the mask names them.
+//! Pixels that look at or through specular objects see no caustic here; the mask names them. Biases: [`trace::APART`] (coincident
+//! surfaces), media nested deeper than sixteen, paths of more than 256 surfaces; of cells besides, what they leave unresolved.
 
 pub mod closed;
 mod direct;

@@ -134,6 +134,11 @@ impl<'a> Run<'a> {
         self.caustic.standing(&self.task.goal, &self.judged)
     }
 
+    /// Chunks so far.
+    pub fn chunks(&self) -> u64 {
+        self.caustic.chunks()
+    }
+
     /// The sums so far, to go on from.
     pub fn checkpoint(&self) -> Vec<u8> {
         self.caustic.to_bytes()

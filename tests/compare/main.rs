@@ -1,9 +1,13 @@
 //! `nephroid compare` as a user runs it: on pictures made here, figures, formats, thresholds, maps; in its rooms
-//! malformed files.
+//! references made and found by themselves, and malformed files.
 
+mod auto;
 mod malformed;
 
-use std::{path::Path, process::Command};
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
 
 use nephroid::image::{Layers, Provenance};
 use serde_json::Value;
@@ -60,13 +64,21 @@ impl Ran {
     }
 }
 
+impl From<Output> for Ran {
+    fn from(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+        let ran = Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) };
+        assert!(!ran.err.contains("panicked"), "{}", ran.err);
+        ran
+    }
+}
+
+fn program() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_nephroid"))
+}
+
 fn compare(arguments: &[&str]) -> Ran {
-    let output = Command::new(env!("CARGO_BIN_EXE_nephroid")).arg("compare").args(arguments).output();
-    let output = output.expect("the program starts");
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    let ran = Ran { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) };
-    assert!(!ran.err.contains("panicked"), "{}", ran.err);
-    ran
+    program().arg("compare").args(arguments).output().expect("the program starts").into()
 }
 
 fn folder() -> TempDir {
@@ -232,8 +244,7 @@ fn a_render_compares_with_itself() {
     let folder = folder();
     let out = folder.path().join("m").display().to_string();
     let render = "render glass-sphere --camera region --size 32x32 --set light.side=64 --repeat 1 --warmup 0 --out";
-    let mut command = Command::new(env!("CARGO_BIN_EXE_nephroid"));
-    let ran = command.args(render.split(' ')).arg(&out).output().expect("the program starts");
+    let ran = program().args(render.split(' ')).arg(&out).output().expect("the program starts");
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
     let image = format!("{out}/image.exr");
     let ran = compare(&[&image, "--reference", &image, "--format", "json", "--fail-above", "relmse=0"]);

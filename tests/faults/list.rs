@@ -105,8 +105,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "inverse square dropped",
         file: "eye/direct.glsl",
-        old: "light.power / max(reach * reach, 1e-30)",
-        new: "light.power",
+        old: " / max(reach * reach, 1e-30)",
+        new: "",
         check: &DIRECT,
     },
     Fault {

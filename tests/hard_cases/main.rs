@@ -27,8 +27,8 @@ const SILHOUETTE: f64 = 0.001;
 /// Flux through the region at light.side 512: the lattice of photons at the region's border.
 const REGION_FLUX: f64 = 0.002;
 
-/// Photons, map texels and picture small enough for a case to take a second.
-const SMALL: [(&str, &str); 2] = [("light.side", "256"), ("maps.side", "128")];
+/// Photons, map texels and picture small enough for a case to take a second; what is known of a pixel, is of its middle.
+const SMALL: [(&str, &str); 3] = [("light.side", "256"), ("maps.side", "128"), ("eye.samples", "1")];
 const SIZE: [u32; 2] = [64, 64];
 
 const NO_PHOTONS: [&str; 3] = ["light/photons", "maps/gather", "eye/surface"];

@@ -12,6 +12,7 @@ mod tests;
 
 use super::{ImageError, Layers, Provenance};
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image};
+use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{ReadChannels, ReadLayers, WritableImage};
 use std::collections::BTreeMap;
@@ -66,8 +67,17 @@ impl Layers {
         for (name, channels) in group(&part.channel_data.list, &main) {
             layers.push(&name, channels.len(), interleave(&channels))?;
         }
-        let ours = |(name, text): (String, String)| Some((name.strip_prefix(PREFIX)?.to_owned(), text));
-        Ok((layers, texts.into_iter().filter_map(ours).collect()))
+        Ok((layers, ours(texts)))
+    }
+
+    /// Reads the provenance of an EXR file, and none of its pixels.
+    ///
+    /// # Errors
+    /// [`ImageError::Format`] if the bytes do not begin as an EXR file.
+    pub fn provenance_of_exr(bytes: &[u8]) -> Result<Provenance, ImageError> {
+        let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(format_error)?;
+        let first = meta.headers.first().map(|h| h.shared_attributes.other.iter().chain(&h.own_attributes.other));
+        Ok(ours(first.into_iter().flatten().filter_map(text_attribute)))
     }
 }
 
@@ -113,6 +123,11 @@ fn attribute_name(name: &str) -> Result<Text, ImageError> {
 /// Bytes as they are: the format leaves the encoding open, and readers take it for UTF-8.
 fn text_value(text: &str) -> AttributeValue {
     AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes()))
+}
+
+fn ours(texts: impl IntoIterator<Item = (String, String)>) -> Provenance {
+    let named = |(name, text): (String, String)| Some((name.strip_prefix(PREFIX)?.to_owned(), text));
+    texts.into_iter().filter_map(named).collect()
 }
 
 fn utf8(text: &Text) -> String {

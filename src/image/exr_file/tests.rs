@@ -24,6 +24,7 @@ fn bits(layer: &Layer) -> Vec<u32> {
 fn every_bit_comes_back() {
     let (image, about) = Layers::from_exr(&sample().to_exr(&provenance()).unwrap()).unwrap();
     assert_eq!(about, provenance());
+    assert_eq!(Layers::provenance_of_exr(&sample().to_exr(&provenance()).unwrap()).unwrap(), about);
     assert_eq!(image.iter().map(Layer::name).collect::<Vec<_>>(), ["radiance", "irradiance.direct", "mask"]);
     for (ours, theirs) in image.iter().zip(sample().iter()) {
         assert_eq!((ours.channels(), bits(ours)), (theirs.channels(), bits(theirs)));
@@ -91,6 +92,9 @@ fn broken_files_are_errors() {
     let whole = sample().to_exr(&provenance()).unwrap();
     for bytes in [&b""[..], b"not an image", &whole[..100], &whole[..whole.len() - 20]] {
         assert!(matches!(Layers::from_exr(bytes), Err(ImageError::Format { .. })), "{} bytes", bytes.len());
+    }
+    for bytes in [&b""[..], b"not an image", &whole[..100]] {
+        assert!(Layers::provenance_of_exr(bytes).is_err(), "{} bytes", bytes.len());
     }
 }
 

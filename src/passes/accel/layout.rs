@@ -68,13 +68,22 @@ pub struct Material {
 pub struct Light {
     /// One of `LIGHT_*`.
     pub kind: u32,
-    /// Directional: unit direction of travel; point: position, m.
+    /// Directional: unit direction of travel; point and spot: position, m.
     pub vector: [f32; 3],
-    /// Directional: W/m² on a plane facing it; point: W/sr.
+    /// Directional: W/m² on a plane facing it; point: W/sr; spot: W/sr on its axis.
     pub power: [f32; 3],
     /// Index of the material that a point light is in, or [`MEDIUM_AIR`].
     pub medium: u32,
+    /// Spot: unit axis.
+    pub axis: [f32; 3],
+    /// 1 − cosine of the half angle up to which all of the power goes; of a light that is no spot, of all directions.
+    pub inner: f32,
+    /// 1 − cosine of the half angle beyond which none does.
+    pub outer: f32,
 }
+
+/// 1 − cosine beyond that of every direction.
+pub const ALL_DIRECTIONS: f32 = 3.0;
 
 /// No medium.
 pub const MEDIUM_AIR: u32 = u32::MAX;

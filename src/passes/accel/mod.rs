@@ -226,15 +226,25 @@ pub fn medium_index(medium: Option<usize>) -> u32 {
     medium.map_or(MEDIUM_AIR, |m| m as u32)
 }
 
-/// Parallel light has no place: it comes through air.
+/// Parallel light has no place: it comes through air. A spot is a point light with a beam.
 fn light(scene: &Scene, light: &crate::scene::Light) -> Result<Light, AccelError> {
-    let (kind, at, power, medium) = match light.kind {
-        LightKind::Directional { direction, irradiance } => (LIGHT_DIRECTIONAL, direction, irradiance, None),
-        LightKind::Point { position, intensity } => (LIGHT_POINT, position, intensity, scene.medium_at(position)),
+    let (kind, at) = match light.kind {
+        LightKind::Directional { direction, .. } => (LIGHT_DIRECTIONAL, direction),
+        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => (LIGHT_POINT, position),
     };
-    let power = vector(&light.name, "its power", power.into())?;
-    let vector = vector(&light.name, "its place or direction", at)?;
-    Ok(Light { kind, vector, power, medium: medium_index(medium) })
+    let (axis, inner, outer) = match light.kind {
+        LightKind::Spot { beam, .. } => (beam.axis, beam.inner as f32, beam.outer as f32),
+        _ => (DVec3::Y, ALL_DIRECTIONS, ALL_DIRECTIONS),
+    };
+    Ok(Light {
+        kind,
+        vector: vector(&light.name, "its place or direction", at)?,
+        power: vector(&light.name, "its power", light.kind.power().into())?,
+        medium: medium_index(light.kind.position().and_then(|p| scene.medium_at(p))),
+        axis: vector(&light.name, "its axis", axis)?,
+        inner,
+        outer,
+    })
 }
 
 fn rows(name: &str, what: &'static str, map: DAffine3) -> Result<[[f32; 4]; 3], AccelError> {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::walk::Start;
 use crate::{
-    scene::{LightKind, Scene, Shape},
+    scene::{Beam, LightKind, Scene, Shape},
     truth::trace::{Media, Ray, Space},
 };
 
@@ -40,6 +40,8 @@ pub enum Emission {
         flux: DVec3,
         /// What the light is in.
         media: Media,
+        /// Of a spot light, which share of its intensity goes where.
+        beam: Option<Beam>,
     },
 }
 
@@ -52,12 +54,20 @@ impl Emission {
         }
         let light = |kind: &LightKind| match kind {
             LightKind::Directional { direction, irradiance } => rectangle(*direction, *irradiance, &held, space),
-            LightKind::Point { position, intensity } => cone(*position, *intensity, &held, space.media(*position)),
+            LightKind::Point { position, intensity } => {
+                held.cone(*position).emission(*position, *intensity, None, space.media(*position))
+            }
+            LightKind::Spot { position, intensity, beam } => {
+                // Whichever holds less: what lies outside the other is dark, or meets nothing.
+                let (held, lit) = (held.cone(*position), Cone { axis: beam.axis, height: beam.outer.min(2.0) });
+                let cone = if held.height < lit.height { held } else { lit };
+                cone.emission(*position, *intensity, Some(*beam), space.media(*position))
+            }
         };
         space.scene.lights.iter().map(|l| light(&l.kind)).collect()
     }
 
-    /// Flux of all its photons, W per band.
+    /// Flux of all its photons, W per band; of a spot light, if the whole cone had the intensity of its axis.
     pub fn flux(&self) -> DVec3 {
         match self {
             Self::Rectangle { flux, .. } | Self::Cone { flux, .. } => *flux,
@@ -71,12 +81,14 @@ impl Emission {
                 let ray = Ray { o: corner + at.x * u + at.y * v, d: *d, left: None };
                 Start { ray, flux, media: None }
             }
-            Self::Cone { apex, frame: [axis, x, y], height, media, .. } => {
+            Self::Cone { apex, frame: [axis, x, y], height, media, beam, .. } => {
                 let below = height * at.x;
                 let across = (below * (2.0 - below)).max(0.0).sqrt();
                 let (sin, cos) = (TAU * at.y).sin_cos();
                 let d = (1.0 - below) * axis + across * (cos * x + sin * y);
-                Start { ray: Ray { o: *apex, d: d.normalize(), left: None }, flux, media: Some(*media) }
+                let d = d.normalize();
+                let flux = flux * beam.map_or(1.0, |beam| beam.share(d));
+                Start { ray: Ray { o: *apex, d, left: None }, flux, media: Some(*media) }
             }
         }
     }
@@ -137,13 +149,30 @@ fn rectangle(d: DVec3, irradiance: [f64; 3], held: &Held, space: &Space) -> Emis
     Emission::Rectangle { corner: x0 * x + y0 * y + start * d, u: (x1 - x0) * x, v: (y1 - y0) * y, d, flux }
 }
 
-fn cone(apex: DVec3, intensity: [f64; 3], held: &Held, media: Media) -> Emission {
-    let axis = (held.middle() - apex).try_normalize();
-    let cosine = axis.map_or(-1.0, |axis| held.balls.iter().map(|b| lowest_cosine(apex, axis, *b)).fold(1.0, f64::min));
-    let axis = axis.unwrap_or(DVec3::Y);
-    let [x, y] = across(axis);
-    let height = ((1.0 - cosine) * (1.0 + MARGIN)).min(2.0);
-    Emission::Cone { apex, frame: [axis, x, y], height, flux: DVec3::from(intensity) * TAU * height, media }
+/// Directions about a unit axis.
+#[derive(Clone, Copy)]
+struct Cone {
+    axis: DVec3,
+    /// 1 − cosine of the half angle.
+    height: f64,
+}
+
+impl Held {
+    /// The cone that holds all, seen from a point: every direction from inside of it.
+    fn cone(&self, apex: DVec3) -> Cone {
+        let axis = (self.middle() - apex).try_normalize();
+        let lowest = |axis| self.balls.iter().map(|b| lowest_cosine(apex, axis, *b)).fold(1.0, f64::min);
+        let height = ((1.0 - axis.map_or(-1.0, lowest)) * (1.0 + MARGIN)).min(2.0);
+        Cone { axis: axis.unwrap_or(DVec3::Y), height }
+    }
+}
+
+impl Cone {
+    fn emission(self, apex: DVec3, intensity: [f64; 3], beam: Option<Beam>, media: Media) -> Emission {
+        let ([x, y], height) = (across(self.axis), self.height);
+        let flux = DVec3::from(intensity) * TAU * height;
+        Emission::Cone { apex, frame: [self.axis, x, y], height, flux, media, beam }
+    }
 }
 
 /// Cosine of the widest angle from the axis at which a ball is seen; −1 from inside it.

@@ -121,7 +121,7 @@ fn light_starts_in_the_medium_about_it() {
     let from_the_ball = landings.iter().filter_map(|l| {
         let back = l.surface.p.dot(l.d);
         let half = (1.0 - (l.surface.p.length_squared() - back * back)).sqrt();
-        (half >= 0.0).then(|| (l, back - half))
+        (half >= 0.0).then_some((l, back - half))
     });
     let mut seen = 0;
     for (landing, after) in from_the_ball {

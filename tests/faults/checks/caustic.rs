@@ -8,7 +8,7 @@ use nephroid::{
     metrics::{Pair, bare_irradiance, relmse},
     renderer::Job,
     truth::{
-        Goal, Run, Task,
+        Estimator, Goal, Run, Task,
         closed::{GlassSphere, Illumination, SphereCaustic},
         trace::Space,
     },
@@ -36,7 +36,7 @@ const RELMSE: f64 = 0.01;
 /// Texels a side of the map, and pixels that are its texels.
 const MAP: u32 = 128;
 const PIXELS: u32 = pixels_of_map(MAP);
-const SMALL: [(&str, &str); 2] = [("light.side", "256"), ("maps.side", "128")];
+const SMALL: [(&str, &str); 3] = [("light.side", "256"), ("maps.side", "128"), ("eye.samples", "1")];
 /// The circles' radii, m.
 const RADII: [f64; 3] = [0.25, 0.5, 1.0];
 /// m about the axis within which the centre is sought.
@@ -92,7 +92,8 @@ fn against_truth(gpu: &Gpu, sources: &Sources) -> f64 {
 /// The truth's caustic in the pixels of a job, and E₀.
 fn truth_of(job: &Job) -> (Vec<f64>, f64) {
     let goal = Goal { photons: Some(400_000), noise: None };
-    let task = Task { paths: job.scene.paths, camera: job.camera.clone(), size: job.size, seed: 1, goal };
+    let (estimator, paths) = (Estimator::Photons, job.scene.paths);
+    let task = Task { estimator, paths, camera: job.camera.clone(), size: job.size, seed: 1, goal };
     let space = Space::new(&job.scene);
     let mut run = Run::new(&space, &job.scene.cameras[&job.camera], &task);
     run.advance(4, |_, _| ControlFlow::Continue(()));

@@ -35,7 +35,9 @@ const PRODUCTS: f64 = 1e-6;
 
 /// Texels a side of the maps here.
 const MAP: u32 = 64;
-const SMALL: [(&str, &str); 2] = [("light.side", "256"), ("maps.side", "64")];
+const SMALL: [(&str, &str); 3] = [("light.side", "256"), ("maps.side", "64"), ONE];
+/// What is known by hand is known at the middle of each pixel.
+const ONE: (&str, &str) = ("eye.samples", "1");
 /// Pixels left out along the border: the reach of splat and look-up.
 const BORDER: usize = 4;
 /// Radii on each side of a shadow's edge that are not judged: pixels that see both.
@@ -83,7 +85,7 @@ fn null(gpu: &Gpu, sources: &Sources) -> f64 {
 
 fn direct(gpu: &Gpu, sources: &Sources) -> f64 {
     let (lamp, intensity) = (DVec3::new(1.6, 5.0, 0.4), 50.0);
-    let mut job = job_of(under_a_lamp("glass-sphere", &[], lamp.into(), intensity), &[], "region", [MAP; 2]);
+    let mut job = job_of(under_a_lamp("glass-sphere", &[], lamp.into(), intensity), &[ONE], "region", [MAP; 2]);
     job.providers = Providers::default();
     let picture = render(gpu, sources, &job);
     let pixels = Pixels { region: &job.scene.region, size: job.size };

@@ -229,7 +229,7 @@ fn whole(five: [Option<&Landed>; 5]) -> Option<[Landed; 5]> {
     if let [Some(a), Some(b), Some(c), Some(d), Some(m)] = [a, b, c, d, centre].map(|l| l.seen.map(|s| s.at)) {
         let across = (c - a).length().max((d - b).length());
         let beside = (0.25 * (a + b + c + d) - m).length();
-        if !(beside <= BESIDE.max(BEND * across)) {
+        if beside > BESIDE.max(BEND * across) {
             return None;
         }
     }

@@ -1,0 +1,154 @@
+//! Lights: sources without size.
+use glam::DVec3;
+
+use super::{
+    error::SceneError,
+    file::{LightFile, SpotFile},
+    locate::Key,
+};
+
+/// Half angles of a spot's cone, degrees; of 180 it is a point light.
+const CONES: std::ops::RangeInclusive<f64> = 1e-3..=180.0;
+
+/// A source without size.
+#[derive(Clone, Debug)]
+pub struct Light {
+    /// As in the file.
+    pub name: String,
+    /// Where its light comes from.
+    pub kind: LightKind,
+}
+
+/// Colours are one number for each of the three bands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightKind {
+    /// Parallel light.
+    Directional {
+        /// Unit vector along which the light travels.
+        direction: DVec3,
+        /// W/m² on a plane that faces the light.
+        irradiance: [f64; 3],
+    },
+    /// The same in every direction.
+    Point {
+        /// m
+        position: DVec3,
+        /// W/sr
+        intensity: [f64; 3],
+    },
+    /// In a cone about an axis.
+    Spot {
+        /// m
+        position: DVec3,
+        /// W/sr on the axis.
+        intensity: [f64; 3],
+        /// Which share of it goes where.
+        beam: Beam,
+    },
+}
+
+/// The cone of a spot light: all of the intensity within the inner half angle, none beyond the outer one, between them
+/// a smooth step (3t² − 2t³) in the cosine. Half angles are kept as 1 − cosine, which has digits left at small ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    /// Unit vector.
+    pub axis: DVec3,
+    /// 1 − cosine of the inner half angle.
+    pub inner: f64,
+    /// 1 − cosine of the outer half angle, at least that of the inner one; equal for a sharp edge. Above 2 where every
+    /// direction is within.
+    pub outer: f64,
+}
+
+impl Beam {
+    /// Share of the intensity along a unit vector, 0 to 1.
+    pub fn share(&self, d: DVec3) -> f64 {
+        let height = 0.5 * (d - self.axis).length_squared();
+        if height <= self.inner {
+            1.0
+        } else if height < self.outer {
+            let t = (self.outer - height) / (self.outer - self.inner);
+            t * t * (3.0 - 2.0 * t)
+        } else {
+            0.0
+        }
+    }
+}
+
+impl LightKind {
+    /// Where a light that has a place is, m.
+    pub fn position(&self) -> Option<DVec3> {
+        match self {
+            Self::Directional { .. } => None,
+            Self::Point { position, .. } | Self::Spot { position, .. } => Some(*position),
+        }
+    }
+
+    /// Its irradiance (W/m²) or, on the axis, intensity (W/sr).
+    pub fn power(&self) -> [f64; 3] {
+        match self {
+            Self::Directional { irradiance, .. } => *irradiance,
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => *intensity,
+        }
+    }
+
+    /// Share of the power that goes along a unit vector.
+    pub fn share(&self, d: DVec3) -> f64 {
+        match self {
+            Self::Directional { .. } | Self::Point { .. } => 1.0,
+            Self::Spot { beam, .. } => beam.share(d),
+        }
+    }
+}
+
+pub(super) fn light(key: &Key, file: &LightFile, unit: f64) -> Result<LightKind, SceneError> {
+    match (&file.directional, &file.point, &file.spot) {
+        (Some(sun), None, None) => {
+            let key = key.key("directional");
+            Ok(LightKind::Directional {
+                direction: key.key("direction").direction(sun.direction)?,
+                irradiance: key.key("irradiance").strength(sun.irradiance, "an irradiance in W/m²")?,
+            })
+        }
+        (None, Some(point), None) => {
+            let key = key.key("point");
+            Ok(LightKind::Point {
+                position: key.key("position").point(point.position, unit)?,
+                intensity: key.key("intensity").strength(point.intensity, "an intensity in W/sr")?,
+            })
+        }
+        (None, None, Some(written)) => spot(&key.key("spot"), written, unit),
+        _ => Err(key.one_kind(&["directional", "point", "spot"])),
+    }
+}
+
+fn spot(key: &Key, file: &SpotFile, unit: f64) -> Result<LightKind, SceneError> {
+    let half_angle = |name: &str, value: f64, range| {
+        key.key(name).number(value, range, "a half angle in degrees", "it is measured from the axis to the edge")
+    };
+    let outer = half_angle("outer", file.outer, CONES)?;
+    let inner = half_angle("inner", file.inner.unwrap_or(outer), 0.0..=outer)?;
+    // 2 sin²(θ/2); of 180°, rounding must not leave a direction out.
+    let height = |degrees: f64| if degrees == 180.0 { 3.0 } else { 2.0 * (0.5 * degrees.to_radians()).sin().powi(2) };
+    let axis = key.key("direction").direction(file.direction)?;
+    Ok(LightKind::Spot {
+        position: key.key("position").point(file.position, unit)?,
+        intensity: key.key("intensity").strength(file.intensity, "an intensity in W/sr")?,
+        beam: Beam { axis, inner: height(inner), outer: height(outer) },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_beam_falls_smoothly_from_one_to_nothing() {
+        let beam = Beam { axis: DVec3::NEG_Y, inner: 0.1, outer: 0.3 };
+        let at = |cosine: f64| beam.share(DVec3::new((1.0 - cosine * cosine).sqrt(), -cosine, 0.0));
+        assert_eq!([at(1.0), at(0.95), at(0.7 - 1e-9), at(-1.0)], [1.0, 1.0, 0.0, 0.0]);
+        assert!((at(0.8) - 0.5).abs() < 1e-12 && at(0.75) < 0.5 && at(0.85) > 0.5);
+        let sharp = Beam { inner: 0.3, ..beam };
+        assert_eq!([sharp.share(DVec3::NEG_Y), sharp.share(DVec3::X)], [1.0, 0.0]);
+    }
+}
