@@ -3,8 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod display;
+mod hand;
 mod picture;
 mod refused;
+mod steered;
 mod tone;
 
 use std::{

@@ -18,20 +18,19 @@ const COLOURED: &str = "--set scene.materials.white.albedo=[0.9,0.5,0.2]";
 const ROUNDING: f64 = 0.01;
 
 /// Colours of a PNG, rows from the top.
-struct Picture {
-    width: usize,
-    bytes: Vec<u8>,
+pub struct Picture {
+    pub size: [u32; 2],
+    pub bytes: Vec<u8>,
 }
 
 impl Picture {
-    fn read(path: &Path) -> Self {
+    pub fn read(path: &Path) -> Self {
         let file = std::fs::File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG");
         let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];
         let info = reader.next_frame(&mut bytes).expect("a whole PNG");
-        assert_eq!([info.width, info.height], SIZE, "{}", path.display());
         assert_eq!(info.color_type, png::ColorType::Rgb);
-        Self { width: info.width as usize, bytes }
+        Self { size: [info.width, info.height], bytes }
     }
 
     /// Mean of each band over the 5×5 pixels where `point` is seen by the camera `main`.
@@ -39,13 +38,15 @@ impl Picture {
         let view = eye::view(&scene.cameras["main"], SIZE, &extents::everything(scene));
         let at = view.project(point).expect("it is in front of the eye") * DVec2::from(SIZE.map(f64::from));
         let (x, y) = (at.x as usize, at.y as usize);
-        let pixels = (y - 2..=y + 2).flat_map(|y| (x - 2..=x + 2).map(move |x| 3 * (y * self.width + x)));
+        let pixels = (y - 2..=y + 2).flat_map(|y| (x - 2..=x + 2).map(move |x| 3 * (y * SIZE[0] as usize + x)));
         let sums = pixels.fold([0.0; 3], |sums, p| [0, 1, 2].map(|band| sums[band] + f64::from(self.bytes[p + band])));
         sums.map(|sum| sum / 25.0)
     }
 }
 
-fn mean_difference(a: &Picture, b: &Picture) -> f64 {
+/// Of two pictures of one size.
+pub fn mean_difference(a: &Picture, b: &Picture) -> f64 {
+    assert_eq!(a.size, b.size);
     let sum: f64 = a.bytes.iter().zip(&b.bytes).map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
     sum / a.bytes.len() as f64
 }
@@ -70,6 +71,7 @@ fn the_window_shows_the_caustic_as_render_writes_it() {
     assert_eq!(code, Some(0), "{err}");
 
     let (shown, written) = (Picture::read(&shot), Picture::read(&out.join("image.png")));
+    assert_eq!(shown.size, SIZE);
     let difference = mean_difference(&shown, &written);
     println!("mean difference {difference:.5} steps");
     assert!(difference <= ROUNDING, "{difference}");
