@@ -15,7 +15,7 @@ use super::{
     Viewing, Watched, WindowError,
     keys::{self, Action},
     live::Live,
-    orbit,
+    orbit, reason,
 };
 use crate::renderer::Job;
 
@@ -50,15 +50,16 @@ impl App {
         let [width, height] = self.job.size;
         let attributes =
             Window::default_attributes().with_title("nephroid").with_inner_size(PhysicalSize::new(width, height));
-        let window = events.create_window(attributes).map_err(|error| WindowError::NoDisplay(error.to_string()))?;
-        Live::new(Arc::new(window), self.job.clone(), &self.viewing)
+        let window =
+            events.create_window(attributes).map_err(|error| WindowError::NoDisplay(reason(&error.to_string())))?;
+        Live::new(Arc::new(window), self.job.clone(), self.viewing.clone())
     }
 
     /// Ends on an error; a window that was closed takes its leave first.
     fn end(&mut self, events: &ActiveEventLoop, error: Option<WindowError>) {
         let outcome = match (error, self.live.as_mut()) {
             (Some(error), _) => Err(error),
-            (None, Some(live)) => live.leave(self.viewing.screenshot.as_deref()),
+            (None, Some(live)) => live.leave(),
             (None, None) => return events.exit(),
         };
         self.outcome.get_or_insert(outcome);
@@ -69,7 +70,7 @@ impl App {
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(live) = self.live.as_mut() else { return };
         match live.draw() {
-            Ok(true) if self.viewing.frames.is_some_and(|frames| live.timed() >= frames) => self.end(events, None),
+            Ok(true) if live.is_done() => self.end(events, None),
             Ok(true) => {}
             Ok(false) => thread::sleep(REST),
             Err(error) => self.end(events, Some(error)),

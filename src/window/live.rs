@@ -1,7 +1,7 @@
 //! An open window: a renderer, the screen it is shown on, and what the user has changed.
 
 use std::{
-    path::Path,
+    io::Write,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -36,23 +36,22 @@ pub(super) struct Live {
     screen: Screen,
     window: Arc<Window>,
     job: Job,
+    viewing: Viewing,
     everything: Extent,
     layer: usize,
     ev: f64,
-    first_ev: f64,
     time: f64,
     index: u32,
     timed: u32,
     /// The first frame of a plan compiles: it is no sample.
     warm: bool,
-    keep: Option<u32>,
     times: Times,
     titled: Option<Instant>,
 }
 
 impl Live {
     /// Opens the device for the window, and prepares the job.
-    pub fn new(window: Arc<Window>, job: Job, viewing: &Viewing) -> Result<Self, WindowError> {
+    pub fn new(window: Arc<Window>, job: Job, viewing: Viewing) -> Result<Self, WindowError> {
         let gpu = Gpu::for_window(&viewing.gpu, window.clone())?;
         (viewing.say)(&format!("device: {}", gpu.info().label()));
         let renderer = Renderer::new(&gpu, &job)?;
@@ -66,13 +65,12 @@ impl Live {
             job,
             layer: 0,
             ev: viewing.ev,
-            first_ev: viewing.ev,
             time: 0.0,
             index: 0,
             timed: 0,
             warm: false,
-            keep: viewing.frames,
             titled: None,
+            viewing,
         })
     }
 
@@ -81,9 +79,9 @@ impl Live {
         self.window.request_redraw();
     }
 
-    /// Frames timed so far.
-    pub fn timed(&self) -> u32 {
-        self.timed
+    /// Whether it has shown as many frames as were asked for.
+    pub fn is_done(&self) -> bool {
+        self.viewing.frames.is_some_and(|frames| self.timed >= frames)
     }
 
     /// Pixels down.
@@ -123,7 +121,7 @@ impl Live {
     fn replan(&mut self, job: Job) -> Result<(), WindowError> {
         if let Some(old) = self.renderer.take() {
             let renderer = old.replan(&job)?;
-            self.times = Times::new(renderer.stages(), self.keep);
+            self.times = Times::new(renderer.stages(), self.viewing.frames);
             self.renderer = Some(renderer);
             self.job = job;
             self.warm = false;
@@ -157,7 +155,7 @@ impl Live {
             Action::Time(more) => self.time += more,
             Action::Exposure(more) => self.ev = (self.ev + more).clamp(-MOST_EV, MOST_EV),
             Action::Reset => {
-                (self.time, self.ev) = (0.0, self.first_ev);
+                (self.time, self.ev) = (0.0, self.viewing.ev);
                 self.job.camera().ok().cloned().into_iter().for_each(|camera| self.camera = camera);
             }
             Action::NextMethod | Action::Hold | Action::Help | Action::Quit => {}
@@ -166,18 +164,19 @@ impl Live {
     }
 
     /// Before it closes: what it shows, written, and the times of what it has shown.
-    pub fn leave(&mut self, screenshot: Option<&Path>) -> Result<Watched, WindowError> {
-        let picture = screenshot.map(|_| self.screenshot()).transpose()?;
+    pub fn leave(&mut self) -> Result<Watched, WindowError> {
+        let path = self.viewing.screenshot.clone();
+        let png = path.as_ref().map(|_| self.screenshot()).transpose()?;
         let Some(device) = self.device() else { return Err(WindowError::Failed("it has no renderer".to_owned())) };
         let [width, height] = self.job.size;
         let heading = format!("{}, camera {}, {width}x{height} pixels", self.subject(), self.job.camera);
         let watched = self.times.watched(heading, DeviceRow::from(device));
-        let messages = self.renderer.iter().flat_map(|renderer| renderer.gpu().take_messages()).collect::<Vec<_>>();
+        let messages = self.renderer.iter().flat_map(|r| r.gpu().take_messages()).collect::<Vec<_>>();
         if !messages.is_empty() {
             return Err(WindowError::Validation(messages));
         }
-        if let (Some(path), Some(png)) = (screenshot, picture) {
-            write_whole(path, |out| std::io::Write::write_all(out, &png))?;
+        if let (Some(path), Some(png)) = (path, png) {
+            write_whole(&path, |out| out.write_all(&png))?;
         }
         Ok(watched)
     }

@@ -70,10 +70,16 @@ pub struct Viewing {
 /// Opens a window on a job until it is closed; the times of its last frames.
 pub fn view(job: Job, viewing: Viewing) -> Result<Watched, WindowError> {
     check_libraries()?;
-    let events = EventLoop::new().map_err(|error| WindowError::NoDisplay(error.to_string()))?;
+    let events = EventLoop::new().map_err(|error| WindowError::NoDisplay(reason(&error.to_string())))?;
     let mut app = app::App::new(job, viewing);
     events.run_app(&mut app).map_err(|error| WindowError::Failed(error.to_string()))?;
     app.finish()
+}
+
+/// What winit says without the place in its source where it says so.
+fn reason(error: &str) -> String {
+    let place = |text: &str| Some(text.split_once(".rs:")?.1.split_once(": ")?.1.to_owned());
+    error.strip_prefix("os error at ").and_then(place).unwrap_or_else(|| error.to_owned())
 }
 
 /// Where winit would panic for want of a library, this is an error.

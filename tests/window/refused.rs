@@ -13,6 +13,7 @@ fn without_a_display_the_error_says_so() {
         command.envs(named.into_iter().filter_map(|(name, value)| Some((name, value?))));
         let (code, out, err) = ran(command.output().unwrap());
         assert_eq!((code, out.as_str()), (Some(NO_DEVICE), ""), "{display:?} {wayland:?}: {err}");
+        assert!(!err.contains(".rs"), "{display:?} {wayland:?}: places in sources: {err}");
         for words in ["no window can be opened", "DISPLAY", "xvfb-run", "scripts/setup"] {
             assert!(err.contains(words), "{display:?} {wayland:?}: the message lacks {words:?}: {err}");
         }
