@@ -8,6 +8,7 @@ use super::{
     Failure,
     args::{JobArgs, ListArgs},
     output::{print, say},
+    render::arguments,
 };
 use crate::{
     gpu::{DeviceChoice, GpuOptions},
@@ -43,7 +44,8 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
     let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
     let gpu = GpuOptions { device, validation: args.validation, capture: false };
     let ev = lab::exposure(&job.settings, &job.scene);
-    let viewing = Viewing { gpu, frames: args.frames, screenshot: args.screenshot.clone(), ev, say };
+    let arguments = arguments(std::env::args_os(), "--screenshot");
+    let viewing = Viewing { gpu, frames: args.frames, screenshot: args.screenshot.clone(), arguments, ev, say };
     let watched = window::view(job, viewing)?;
     args.screenshot.iter().for_each(|path| say(&format!("written: {}", path.display())));
     if args.frames.is_some() { print(&watched.write(args.list.format)?) } else { Ok(()) }

@@ -132,7 +132,9 @@ impl ApplicationHandler for App {
             WindowEvent::RedrawRequested => return self.draw(events),
             WindowEvent::CloseRequested => self.end(events, None),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
-                keys::action(&event.logical_key).into_iter().for_each(|action| self.act(events, action));
+                let repeats = |action: &Action| matches!(action, Action::Time(_) | Action::Exposure(_));
+                let action = keys::action(&event.logical_key).filter(|action| !event.repeat || repeats(action));
+                action.into_iter().for_each(|action| self.act(events, action));
             }
             WindowEvent::CursorMoved { position, .. } => self.moved(DVec2::new(position.x, position.y)),
             WindowEvent::MouseInput { state, button, .. } => {

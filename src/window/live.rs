@@ -11,8 +11,8 @@ use winit::window::Window;
 use super::{Viewing, Watched, WindowError, keys::Action, times::Times};
 use crate::{
     gpu::{DeviceInfo, Gpu, Screen},
-    image::{Provenance, rgb_to_png},
-    lab::DeviceRow,
+    image::{self, rgb_to_png},
+    lab::{DeviceRow, Provenance},
     methods,
     passes::{extents, eye},
     renderer::{self, Frame, Job, LAYERS, Providers, Renderer},
@@ -94,8 +94,7 @@ impl Live {
         if !self.fit()? {
             return Ok(false);
         }
-        let view = eye::view(&self.camera, self.job.size, &self.everything);
-        let frame = Frame { time: self.time, index: self.index, seed: 0, camera: Some(view) };
+        let frame = self.frame();
         let Some(renderer) = self.renderer.as_mut() else { return Ok(false) };
         let times = renderer.frame(&frame)?;
         let Some(show_ms) = renderer.show(&mut self.screen, LAYERS[self.layer], self.ev)? else { return Ok(false) };
@@ -107,6 +106,11 @@ impl Live {
         self.warm = true;
         self.entitle();
         Ok(true)
+    }
+
+    fn frame(&self) -> Frame {
+        let view = eye::view(&self.camera, self.job.size, &self.everything);
+        Frame { time: self.time, index: self.index, seed: 0, camera: Some(view) }
     }
 
     /// Follows the window's size; false while it has none.
@@ -191,11 +195,21 @@ impl Live {
             let Some(renderer) = self.renderer.as_ref() else { break };
             let shown = renderer.screenshot(&mut self.screen, LAYERS[self.layer], self.ev)?;
             if let Some(colours) = shown {
-                let size = self.job.size.map(|side| side as usize);
-                return Ok(rgb_to_png(size, &colours, &Provenance::new())?);
+                return Ok(rgb_to_png(self.job.size.map(|side| side as usize), &colours, &self.about(renderer))?);
             }
         }
         Err(WindowError::Failed("it has no pixels to make a screenshot of".to_owned()))
+    }
+
+    /// What makes the same picture again.
+    fn about(&self, renderer: &Renderer) -> image::Provenance {
+        let (device, arguments) = (renderer.gpu().info(), self.viewing.arguments.clone());
+        let mut about = Provenance::new(&self.job, &self.frame(), device, arguments).attributes();
+        let Camera { position, target, .. } = self.camera;
+        let seen = [("layer", LAYERS[self.layer].to_owned()), ("exposure_ev", self.ev.to_string())];
+        let from = [("position_m", position.to_string()), ("target_m", target.to_string())];
+        about.extend(seen.into_iter().chain(from).map(|(name, text)| (format!("view.{name}"), text)));
+        about
     }
 
     fn device(&self) -> Option<&DeviceInfo> {

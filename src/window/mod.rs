@@ -61,6 +61,8 @@ pub struct Viewing {
     pub frames: Option<u32>,
     /// Where what the window shows in the end is written, as PNG.
     pub screenshot: Option<PathBuf>,
+    /// What was typed, for the screenshot's provenance.
+    pub arguments: Vec<String>,
     /// Exposure to begin with, EV.
     pub ev: f64,
     /// Hears what there is to say while the window is open.
