@@ -78,8 +78,8 @@ pub struct Renderer {
     program: Program,
     camera: Camera,
     eye: View,
-    /// Where the eye was last, and in which medium.
-    eye_medium: (DVec3, u32),
+    /// Where the eye was last, and in which media.
+    eye_media: (DVec3, u32),
     scene: Arc<Scene>,
     sources: Sources,
     store: Store,
@@ -177,9 +177,9 @@ impl Renderer {
             vec![("prepare/plan", planned.plan_ms), ("prepare/program", program_ms), ("prepare/passes", passes_ms)];
         let camera = job.camera()?.clone();
         let eye = eye::view(&camera, job.size, &extents::everything(&job.scene));
-        let eye_medium = (eye.origin, accel::medium_index(job.scene.medium_of_eye(&camera, eye.origin)));
+        let eye_media = (eye.origin, accel::packed_media(&job.scene.media_of_eye(&camera, eye.origin)));
         let (gpu, scene) = (gpu.clone(), job.scene.clone());
-        Ok(Self { gpu, planned, program, camera, eye, eye_medium, scene, sources, store, prepare_ms })
+        Ok(Self { gpu, planned, program, camera, eye, eye_media, scene, sources, store, prepare_ms })
     }
 
     /// What is recorded every frame.
@@ -239,11 +239,11 @@ impl Renderer {
 
     fn frame_data(&mut self, frame: &Frame) -> FrameData {
         let eye = frame.camera.unwrap_or(self.eye);
-        if self.eye_medium.0 != eye.origin {
-            let medium = self.scene.medium_of_eye(&self.camera, eye.origin);
-            self.eye_medium = (eye.origin, accel::medium_index(medium));
+        if self.eye_media.0 != eye.origin {
+            let media = self.scene.media_of_eye(&self.camera, eye.origin);
+            self.eye_media = (eye.origin, accel::packed_media(&media));
         }
-        let (time, eye_medium) = (frame.time as f32, self.eye_medium.1);
-        FrameData { eye: eye.data(), time, index: frame.index, seed: frame.seed, eye_medium }
+        let (time, eye_media) = (frame.time as f32, self.eye_media.1);
+        FrameData { eye: eye.data(), time, index: frame.index, seed: frame.seed, eye_media }
     }
 }

@@ -23,9 +23,9 @@ fn offsets_agree() {
         host!("TriangleNormals", accel::TriangleNormals { a, b, c }),
         host!("Instance", accel::Instance { to_object, to_world, kind, material, object, root }),
         host!("Material", accel::Material { kind, ior, colour, absorption }),
-        host!("Light", accel::Light { kind, vector, power, medium, axis, inner, outer }),
+        host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer }),
         host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),
-        host!("FrameData", FrameData { eye, time, index, seed, eye_medium }),
+        host!("FrameData", FrameData { eye, time, index, seed, eye_media }),
         host!("View", ViewData { origin, x0, right, x1, up, y0, forward, y1, near, far, perspective, pad }),
     ];
     let defines: Vec<_> =

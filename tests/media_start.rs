@@ -182,7 +182,7 @@ const MEDIUM: (&str, &str) = (
     "shared/transport.glsl",
     "return medium == MEDIUM_AIR ? vec3(1.0) : absorb(scene_materials.data[medium].absorption, metres);",
 );
-const EYE: (&str, &str) = ("eye/medium.glsl", "return medium_transmits(frame.data.eye_medium, metres);");
+const EYE: (&str, &str) = ("eye/medium.glsl", "return medium_transmits(innermost(frame.data.eye_media), metres);");
 
 /// With nothing that absorbs, media change no bit; nor does the eye's own medium where the eye is in air.
 #[test]

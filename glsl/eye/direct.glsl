@@ -21,7 +21,7 @@ vec3 direct_irradiance(Surface s, vec3 d) {
             reach = dot(way, towards);
             if (!(reach > 0.0)) continue; // the light is at the point: it has no direction
             facing = light.power * light_share(light, -towards);
-            facing *= medium_transmits(light.medium, reach) / max(reach * reach, 1e-30);
+            facing *= medium_transmits(innermost(light.media), reach) / max(reach * reach, 1e-30);
         }
         float cosine = dot(geometric, towards);
         if (!(cosine > 0.0)) continue;

@@ -1,4 +1,4 @@
-// The medium that the eye is in.
+// The media that the eye is in.
 #ifndef EYE_MEDIUM_GLSL
 #define EYE_MEDIUM_GLSL
 
@@ -10,7 +10,7 @@ vec3 eye_transmits(vec3 p) {
     View eye = frame.data.eye;
     vec3 way = p - eye.origin;
     float metres = eye.perspective != 0u ? length(way) : dot(way, eye.forward) - eye.near;
-    return medium_transmits(frame.data.eye_medium, metres);
+    return medium_transmits(innermost(frame.data.eye_media), metres);
 }
 
 #endif

@@ -23,57 +23,61 @@ struct Branch {
     vec3 o;
     vec3 d;
     vec3 share; // of the radiance at its end that reaches the eye
-    uint medium;
+    uint media;
     int events;
 };
 
 Branch branches[DEPTH + 2];
 int branch_count = 0;
 
-void follow(Surface s, vec3 d, vec3 share, uint medium, int events) {
+void follow(Surface s, vec3 d, vec3 share, uint media, int events) {
     if (branch_count >= DEPTH + 2 || !(max(share.r, max(share.g, share.b)) > FAINT)) return;
-    branches[branch_count++] = Branch(leave(s, d), d, share, medium, events);
+    branches[branch_count++] = Branch(leave(s, d), d, share, media, events);
 }
 
-// One specular surface: its reflected and refracted rays. L/n^2 is invariant across an interface.
-void split(Surface s, vec3 d, vec3 share, uint medium, int events) {
+// One specular surface: its reflected and refracted rays. L/n^2 is invariant across an interface. A surface between two
+// shapes of one material is passed, and counts as an event.
+void split(Surface s, vec3 d, vec3 share, uint media, int events) {
     Material m = scene_materials.data[s.material];
     uint bent = 0u;
     float reflectance;
     vec3 reflected, refracted;
-    bool entering = dot(d, s.ng) < 0.0;
-    float from = entering ? 1.0 : m.ior;
-    float to = entering ? m.ior : 1.0;
     if (m.kind == MATERIAL_MIRROR) {
         bend_reflect(s, d, 1.0, 1.0, reflected, reflectance, bent);
-        follow(s, reflected, share * m.colour, medium, events + 1);
+        follow(s, reflected, share * m.colour, media, events + 1);
         return;
     }
+    uint beyond = media_beyond(s, d, media);
+    if (innermost(beyond) == innermost(media)) {
+        follow(s, d, share, beyond, events + 1);
+        return;
+    }
+    float from = medium_ior(innermost(media));
+    float to = medium_ior(innermost(beyond));
     // One reflectance for both branches, so that they share out just what came.
     if (bend_refract(s, d, from, to, refracted, reflectance, bent)) {
         float scale = from / to;
-        uint inside = entering ? s.material : MEDIUM_AIR;
-        follow(s, refracted, share * (1.0 - reflectance) * scale * scale, inside, events + 1);
+        follow(s, refracted, share * (1.0 - reflectance) * scale * scale, beyond, events + 1);
     }
     float of_reflection;
     bend_reflect(s, d, from, to, reflected, of_reflection, bent);
-    follow(s, reflected, share * reflectance, medium, events + 1);
+    follow(s, reflected, share * reflectance, media, events + 1);
 }
 
 void look(Surface s, vec3 d) {
-    split(s, d, eye_transmits(s.p), frame.data.eye_medium, 0);
+    split(s, d, of_traced_bands(eye_transmits(s.p)), media_before(s, d, frame.data.eye_media), 0);
     while (branch_count > 0) {
         Branch b = branches[--branch_count];
         Hit hit;
         if (!trace(b.o, b.d, FAR, MASK_ALL, hit)) continue;
         Surface at = surface_at(b.o, b.d, hit);
         Material m = scene_materials.data[at.material];
-        vec3 share = b.share * medium_transmits(b.medium, hit.t);
+        vec3 share = b.share * medium_transmits(innermost(b.media), hit.t);
         if (m.kind == MATERIAL_DIFFUSE) {
             direct.rgb += share * direct_irradiance(at, b.d) * m.colour / PI;
             caustic.rgb += share * surface_irradiance(at.p, facing_normal(at, b.d), at.object, at.uv) * m.colour / PI;
         } else if (b.events < DEPTH) {
-            split(at, b.d, share, b.medium, b.events);
+            split(at, b.d, share, b.media, b.events);
         }
     }
 }
@@ -87,7 +91,12 @@ void main() {
         Surface s;
         vec3 d;
         if (!eye_surface(sample_texel(pixel, k), s, d)) continue;
-        if (scene_materials.data[s.material].kind != MATERIAL_DIFFUSE) look(s, d);
+        if (scene_materials.data[s.material].kind == MATERIAL_DIFFUSE) continue;
+#ifdef DISPERSIVE
+        for (traced_band = 0; traced_band < 3; traced_band++) look(s, d);
+#else
+        look(s, d);
+#endif
     }
     direct /= float(samples);
     caustic /= float(samples);

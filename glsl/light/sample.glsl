@@ -22,7 +22,7 @@ LightSample light_sample(ivec2 texel) {
     s.footprint = v.perspective != 0u ? view_texel_solid_angle(v, push.size, texel)
                                       : view_texel_cross_section(v, push.size);
     s.flux = light.power * (light_share(light, s.direction) * s.footprint);
-    s.medium = light.medium;
+    s.media = light.media;
     return s;
 }
 

@@ -9,6 +9,9 @@
 #include "shared/photon.glsl"
 #include "shared/transport.glsl"
 
+// Surfaces between two shapes of one material that a photon may pass besides its events.
+const int PASSED = 8;
+
 // Takes from the photon what the medium absorbs on a way.
 void travel(inout Photon p, uint medium, float metres) {
     if (medium == MEDIUM_AIR) return;
@@ -17,10 +20,9 @@ void travel(inout Photon p, uint medium, float metres) {
     p.flux = left;
 }
 
-// One specular event: bends d, moves flux to its buckets, changes the medium. The status it leaves, VALID to go on.
-uint interact(inout Photon p, Surface s, inout vec3 d, inout uint medium) {
+// One specular event: bends d, moves flux to its buckets, changes the media. The status it leaves, VALID to go on.
+uint interact(inout Photon p, Surface s, inout vec3 d, inout uint media) {
     Material m = scene_materials.data[s.material];
-    bool entering = dot(d, s.ng) < 0.0;
     if (m.kind == MATERIAL_MIRROR) {
 #if REFLECT
         float unused;
@@ -34,8 +36,9 @@ uint interact(inout Photon p, Surface s, inout vec3 d, inout uint medium) {
         return PHOTON_BLOCKED;
 #endif
     }
-    float from = entering ? 1.0 : m.ior;
-    float to = entering ? m.ior : 1.0;
+    uint beyond = media_beyond(s, d, media);
+    float from = medium_ior(innermost(media));
+    float to = medium_ior(innermost(beyond));
     float reflectance;
     vec3 bent;
 #if REFLECT
@@ -46,10 +49,16 @@ uint interact(inout Photon p, Surface s, inout vec3 d, inout uint medium) {
     if (!bend_refract(s, d, from, to, bent, reflectance, p.bent)) return PHOTON_TOTAL_REFLECTION;
     p.other += p.flux * reflectance;
     p.flux *= 1.0 - reflectance;
-    medium = entering ? s.material : MEDIUM_AIR;
+    media = beyond;
 #endif
     d = bent;
     return PHOTON_VALID;
+}
+
+// Whether both sides of a dielectric surface are one medium: light goes through it as if it were not there.
+bool is_no_interface(Surface s, vec3 d, uint media) {
+    return scene_materials.data[s.material].kind == MATERIAL_DIELECTRIC &&
+           innermost(media_beyond(s, d, media)) == innermost(media);
 }
 
 // Whether the sample would meet a specular object if nothing stood before it.
@@ -61,6 +70,10 @@ bool is_emitted(LightSample light, bool found, Hit first) {
 
 Photon trace_photon(LightSample light) {
     vec3 zero = vec3(0.0);
+#ifdef DISPERSIVE
+    traced_band = BAND;
+    light.flux = of_traced_bands(light.flux);
+#endif
     Photon p = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
     if (!any(greaterThan(light.flux, zero))) return p; // beyond a spot's edge
     vec3 o = light.origin, d = light.direction;
@@ -69,15 +82,16 @@ Photon trace_photon(LightSample light) {
     if (!is_emitted(light, found, hit)) return p;
     p.emitted = light.flux;
     p.flux = light.flux;
-    uint medium = light.medium;
-    for (int events = 0; events <= EVENTS; events++) {
+    uint media = light.media;
+    int events = 0;
+    for (int met = 0; met <= EVENTS + PASSED; met++) {
         if (!found) {
             p.status = PHOTON_MISSED;
             return p;
         }
         Surface s = surface_at(o, d, hit);
         bool diffuse = material_mask(s.material) == MASK_DIFFUSE;
-        travel(p, medium, hit.t);
+        travel(p, innermost(media), hit.t);
         if (!any(greaterThan(p.flux, zero))) {
             p.status = PHOTON_ABSORBED;
             return p;
@@ -89,11 +103,17 @@ Photon trace_photon(LightSample light) {
             p.receiver = s.object;
             return p;
         }
-        if (events == EVENTS) break;
-        p.status = interact(p, s, d, medium);
-        if (p.status != PHOTON_VALID) return p;
-        p.exit = s.p;
-        p.direction = d;
+        if (met == 0) media = media_before(s, d, media);
+        if (is_no_interface(s, d, media)) {
+            media = media_beyond(s, d, media);
+        } else {
+            if (events == EVENTS) break;
+            p.status = interact(p, s, d, media);
+            if (p.status != PHOTON_VALID) return p;
+            events++;
+            p.exit = s.p;
+            p.direction = d;
+        }
         o = leave(s, d);
         found = trace(o, d, FAR, MASK_ALL, hit);
     }

@@ -9,7 +9,7 @@ struct FrameData {
     float time; // s
     uint index;
     uint seed;
-    uint eye_medium; // the material that the eye is in, or MEDIUM_AIR
+    uint eye_media; // about the eye (transport.glsl)
 };
 
 layout(set = 0, binding = 6, scalar) readonly buffer FrameBlock { FrameData data; } frame;

@@ -21,7 +21,7 @@ struct LightSample {
     vec3 direction;
     vec3 flux;       // W
     float footprint; // m^2 (directional) or sr (point): the part of the light it stands for
-    uint medium;     // that it starts in
+    uint media;      // that it starts in (transport.glsl)
 };
 
 struct Photon {

@@ -2,6 +2,7 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
+// DISPERSIVE is defined where materials bend the bands apart: they are then traced apart.
 // The host defines NO_SPHERES, NO_QUADS, NO_MESHES or NO_SPOTS where a scene has none: their code is then not compiled.
 
 // A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
@@ -37,7 +38,7 @@ const uint SHAPE_MESH = 2u;
 
 struct Material {
     uint kind;
-    float ior;
+    vec3 ior;        // of each band
     vec3 colour;     // albedo, or a mirror's reflectance
     vec3 absorption; // 1/m
 };
@@ -50,7 +51,7 @@ struct Light {
     uint kind;
     vec3 vector; // directional: unit direction of travel; point, spot: position
     vec3 power;  // directional: irradiance of a plane facing it, W/m^2; point, spot: intensity, W/sr (on the axis)
-    uint medium; // the material that a point light is in, or MEDIUM_AIR
+    uint media;  // about a point light (transport.glsl)
     vec3 axis;   // spot: unit
     float inner; // 1 - cosine of the half angle up to which all of the power goes; above 2: everywhere
     float outer; // 1 - cosine of the half angle beyond which none does

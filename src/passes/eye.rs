@@ -75,7 +75,7 @@ pub struct FrameData {
     pub time: f32,
     pub index: u32,
     pub seed: u32,
-    pub eye_medium: u32,
+    pub eye_media: u32,
 }
 
 /// The view of a camera for a picture of `size` pixels.

@@ -24,6 +24,7 @@ pub struct SceneBuffers {
     pub(super) has_spheres: bool,
     has_quads: bool,
     has_spots: bool,
+    is_dispersive: bool,
 }
 
 impl SceneBuffers {
@@ -42,12 +43,14 @@ impl SceneBuffers {
             has_spheres: any(SHAPE_SPHERE),
             has_quads: any(SHAPE_QUAD),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
+            is_dispersive: scene.is_dispersive(),
         }
     }
 
     /// For a pass that makes surfaces from hits.
     pub fn surfaces<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         let pass = self.shapes(pass).offer("scene_instances", self.instances).offer("scene_materials", self.materials);
+        let pass = if self.is_dispersive { pass.define("DISPERSIVE", 1) } else { pass };
         match self.meshes {
             Some((triangles, normals)) => pass.offer("scene_triangles", triangles).offer("scene_normals", normals),
             None => pass,

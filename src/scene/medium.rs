@@ -28,21 +28,29 @@ impl Scene {
     /// A point on a sphere or a quad is outside; on a mesh's surface rounding decides. A point that is not finite is in
     /// air.
     pub fn medium_at(&self, p: DVec3) -> Option<usize> {
-        self.medium_within(p, |_| true)
+        self.media_at(p).pop()
     }
 
-    /// The medium of an eye at a point (m), for which only what the camera sees is there.
-    pub fn medium_of_eye(&self, camera: &Camera, p: DVec3) -> Option<usize> {
-        self.medium_within(p, |object| object.visible_to_camera && !camera.hides_specular)
+    /// All media about a point, the outermost first, as [`Self::medium_at`] orders them.
+    pub fn media_at(&self, p: DVec3) -> Vec<usize> {
+        self.media_within(p, |_| true)
     }
 
-    fn medium_within(&self, p: DVec3, counts: impl Fn(&Object) -> bool) -> Option<usize> {
+    /// The media about an eye at a point (m), for which only what the camera sees is there; the outermost first.
+    pub fn media_of_eye(&self, camera: &Camera, p: DVec3) -> Vec<usize> {
+        self.media_within(p, |object| object.visible_to_camera && !camera.hides_specular)
+    }
+
+    fn media_within(&self, p: DVec3, counts: impl Fn(&Object) -> bool) -> Vec<usize> {
         let media = self.objects.iter().filter(|object| counts(object)).filter_map(|object| {
             let material = self.materials.get(object.material)?;
             matches!(material.kind, MaterialKind::Dielectric { .. }).then_some(())?;
             Some((hold(&object.shape, p)?, object.material))
         });
-        media.reduce(|held, other| if other.0 < held.0 { other } else { held }).map(|(_, material)| material)
+        let mut held: Vec<(Hold, usize)> = media.collect();
+        // The first by name is the innermost of several in one place: the sort is stable, and reversed.
+        held.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
+        held.into_iter().rev().map(|(_, material)| material).collect()
     }
 }
 
@@ -94,7 +102,7 @@ mod tests {
     /// dielectric of which the index is the object's.
     fn of(shapes: Vec<Shape>) -> Scene {
         let mut scene = Scene::load("glass-sphere", &[]).unwrap();
-        let kind = MaterialKind::Dielectric { ior: 1.5, absorption: [0.0; 3] };
+        let kind = MaterialKind::Dielectric { ior: [1.5; 3], absorption: [0.0; 3] };
         scene.materials = (0..shapes.len()).map(|k| Material { name: k.to_string(), kind: kind.clone() }).collect();
         let object = |(k, shape)| Object { name: format!("{k}"), shape, material: k, visible_to_camera: true };
         scene.objects = shapes.into_iter().enumerate().map(object).collect();
@@ -188,12 +196,12 @@ mod tests {
     fn only_dielectrics_hold_a_medium_and_an_eye_only_what_it_sees() {
         let mut scene = of(vec![sphere(DVec3::ZERO, 1.0)]);
         let mut camera = scene.cameras["main"].clone();
-        assert_eq!(scene.medium_of_eye(&camera, DVec3::ZERO), Some(0));
+        assert_eq!(scene.media_of_eye(&camera, DVec3::ZERO).pop(), Some(0));
         camera.hides_specular = true;
-        assert_eq!(scene.medium_of_eye(&camera, DVec3::ZERO), None);
+        assert_eq!(scene.media_of_eye(&camera, DVec3::ZERO).pop(), None);
         camera.hides_specular = false;
         scene.objects[0].visible_to_camera = false;
-        assert_eq!(scene.medium_of_eye(&camera, DVec3::ZERO), None);
+        assert_eq!(scene.media_of_eye(&camera, DVec3::ZERO).pop(), None);
         assert_eq!(scene.medium_at(DVec3::ZERO), Some(0));
         scene.materials[0].kind = MaterialKind::Mirror { reflectance: [1.0; 3] };
         assert_eq!(scene.medium_at(DVec3::ZERO), None);

@@ -133,8 +133,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "the light's medium ignored",
         file: "light/sample.glsl",
-        old: "s.medium = light.medium;",
-        new: "s.medium = 0xffffffffu;",
+        old: "s.media = light.media;",
+        new: "s.media = 0xffffffffu;",
         check: &LAMP_IN_GLASS,
     },
 ];

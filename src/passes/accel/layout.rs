@@ -55,7 +55,7 @@ pub struct Material {
     /// One of `MATERIAL_*`.
     pub kind: u32,
     /// Index of refraction; 1 for what has none.
-    pub ior: f32,
+    pub ior: [f32; 3],
     /// Albedo, or a mirror's reflectance.
     pub colour: [f32; 3],
     /// 1/m
@@ -72,8 +72,8 @@ pub struct Light {
     pub vector: [f32; 3],
     /// Directional: W/m² on a plane facing it; point: W/sr; spot: W/sr on its axis.
     pub power: [f32; 3],
-    /// Index of the material that a point light is in, or [`MEDIUM_AIR`].
-    pub medium: u32,
+    /// About a point light ([`packed_media`]).
+    pub media: u32,
     /// Spot: unit axis.
     pub axis: [f32; 3],
     /// 1 − cosine of the half angle up to which all of the power goes; of a light that is no spot, of all directions.
@@ -85,8 +85,14 @@ pub struct Light {
 /// 1 − cosine beyond that of every direction.
 pub const ALL_DIRECTIONS: f32 = 3.0;
 
-/// No medium.
-pub const MEDIUM_AIR: u32 = u32::MAX;
+/// Materials that a byte names, one value less, which means air.
+pub const MOST_MATERIALS: usize = 255;
+
+/// The media about a point by material, outermost first, in the bytes of the shaders: the innermost lowest; of more than
+/// four the outermost are left out.
+pub fn packed_media(outermost_first: &[usize]) -> u32 {
+    outermost_first.iter().fold(u32::MAX, |media, material| media << 8 | *material as u32)
+}
 
 /// Unit sphere at the origin.
 pub const SHAPE_SPHERE: u32 = 0;

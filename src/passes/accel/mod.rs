@@ -59,6 +59,9 @@ impl SceneArrays {
             .filter_map(|(i, o)| place(i, o, &mut meshes).transpose())
             .collect::<Result<_, _>>()?;
         check_count("objects", placed.len(), MOST_INSTANCES)?;
+        let dielectric = |m: &SceneMaterial| matches!(m.kind, MaterialKind::Dielectric { .. });
+        let named = scene.materials.iter().rposition(dielectric).map_or(0, |last| last + 1);
+        check_count("materials up to the last dielectric by name", named, MOST_MATERIALS)?;
         let boxes: Vec<Aabb> = placed.iter().map(|p| p.bounds).collect();
         let top = if boxes.is_empty() { nowhere() } else { Tree::over(&boxes, TOP_LEVELS) };
         let base = top.nodes.len() as u32;
@@ -209,21 +212,16 @@ fn bounds(mesh: &Mesh, to_world: &DAffine3) -> (DVec3, DVec3) {
 fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
     let name = &material.name;
     let (kind, ior, colour, absorption) = match material.kind {
-        MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, 1.0, albedo, [0.0; 3]),
+        MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, [1.0; 3], albedo, [0.0; 3]),
         MaterialKind::Dielectric { ior, absorption } => (MATERIAL_DIELECTRIC, ior, [1.0; 3], absorption),
-        MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, 1.0, reflectance, [0.0; 3]),
+        MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, [1.0; 3], reflectance, [0.0; 3]),
     };
     Ok(Material {
         kind,
-        ior: number(name, "its index", ior)?,
+        ior: vector(name, "its index", ior.into())?,
         colour: vector(name, "its colour", colour.into())?,
         absorption: vector(name, "its absorption", absorption.into())?,
     })
-}
-
-/// The medium in the numbers of the shaders.
-pub fn medium_index(medium: Option<usize>) -> u32 {
-    medium.map_or(MEDIUM_AIR, |m| m as u32)
 }
 
 /// Parallel light has no place: it comes through air. A spot is a point light with a beam.
@@ -240,7 +238,7 @@ fn light(scene: &Scene, light: &crate::scene::Light) -> Result<Light, AccelError
         kind,
         vector: vector(&light.name, "its place or direction", at)?,
         power: vector(&light.name, "its power", light.kind.power().into())?,
-        medium: medium_index(light.kind.position().and_then(|p| scene.medium_at(p))),
+        media: packed_media(&light.kind.position().map_or(vec![], |p| scene.media_at(p))),
         axis: vector(&light.name, "its axis", axis)?,
         inner,
         outer,

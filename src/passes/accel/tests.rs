@@ -37,6 +37,13 @@ fn constants_agree_with_the_shaders() {
 }
 
 #[test]
+fn media_are_packed_with_the_innermost_lowest() {
+    assert_eq!(packed_media(&[]), u32::MAX);
+    assert_eq!(packed_media(&[3, 7]), 0xffff_0307);
+    assert_eq!(packed_media(&[9, 1, 2, 3, 4]), 0x0102_0304, "the outermost of five is left out");
+}
+
+#[test]
 fn canonical_shapes_land_where_the_scene_puts_them() {
     let scene = load("glass-sphere");
     let all = arrays(&scene);
