@@ -41,7 +41,7 @@ const CASES: &[(&str, i32, &[&str])] = &[
     ("src/scene/", USAGE, &["src/scene/", "a folder"]),
     ("glass-sphere --set scene.materials.glass.iro=1.3", USAGE, &["scene.materials.glass.iro", "did you mean", "ior"]),
     ("glass-sphere --set scene.materials.glass.ior=-1", USAGE, &["--set scene.materials.glass.ior=-1", "ior"]),
-    ("glass-sphere --set scene.materials.glass.ior=wet", USAGE, &["--set scene.materials.glass.ior=wet", "a number"]),
+    ("glass-sphere --set scene.materials.glass.ior=wet", USAGE, &["materials.glass.ior=wet", "bk7", "water"]),
     ("glass-sphere --set scene.objects.ball.material=[1", USAGE, &["--set scene.objects.ball.material=[1", "TOML"]),
     ("glass-sphere --set scene.objects.ball.material=gold", USAGE, &["gold", "glass", "white"]),
     ("bunny --set scene.objects.bunny.file=none.obj", USAGE, &["none.obj", "No such file"]),
