@@ -10,7 +10,8 @@
 //! | 3 | [`methods`]: a room per paper; [`truth`]: float64, sharing no code with floors 1 to 3 |
 //! | 4 | [`renderer`]: plan → prepare → frame → read |
 //! | 5 | [`lab`]: experiments, and reports as data with their writers |
-//! | 6 | [`cli`]: the command line |
+//! | 6 | [`window`]: a window over the renderer |
+//! | 7 | [`cli`]: the command line |
 
 pub mod cli;
 pub mod gpu;
@@ -30,3 +31,4 @@ pub mod store;
 pub mod truth;
 pub mod view;
 pub mod whole;
+pub mod window;

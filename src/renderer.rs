@@ -2,6 +2,7 @@
 
 mod plan;
 mod read;
+mod show;
 
 use std::{sync::Arc, time::Instant};
 
@@ -25,6 +26,7 @@ use crate::{
 
 pub use plan::{Planned, Providers, plan};
 pub use read::{Dump, Energy, resource};
+pub use show::LAYERS;
 
 /// An error of rendering.
 #[derive(Debug, thiserror::Error)]

@@ -12,6 +12,7 @@ use crate::{
     scene::{Place, SceneError},
     settings::SettingError,
     whole::FileError,
+    window::WindowError,
 };
 
 const FAILED: u8 = 1;
@@ -92,10 +93,12 @@ impl From<GpuError> for Failure {
 
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
-        use GpuError::{NoCapture, NoDevice, NoLoader, NoSuchDevice, TooLarge, Unsuitable};
+        use GpuError::{NoCapture, NoDevice, NoLoader, NoScreen, NoSuchDevice, TooLarge, Unsuitable};
         let code = match &error {
             RenderError::Lacks { .. } => NO_DEVICE,
-            RenderError::Gpu(NoDevice | NoLoader(_) | NoSuchDevice { .. } | Unsuitable { .. }) => NO_DEVICE,
+            RenderError::Gpu(NoDevice | NoLoader(_) | NoScreen(_) | NoSuchDevice { .. } | Unsuitable { .. }) => {
+                NO_DEVICE
+            }
             RenderError::Gpu(NoCapture(_) | TooLarge { .. }) => USAGE,
             RenderError::Unknown(_) | RenderError::Plan(PlanError::Refused { .. }) => USAGE,
             RenderError::Gpu(_) | RenderError::Plan(PlanError::Accel(_)) => FAILED,
@@ -117,6 +120,16 @@ impl From<LabError> for Failure {
 impl From<CompareError> for Failure {
     fn from(error: CompareError) -> Self {
         Self::failed(error)
+    }
+}
+
+impl From<WindowError> for Failure {
+    fn from(error: WindowError) -> Self {
+        match error {
+            WindowError::Render(error) => error.into(),
+            WindowError::NoDisplay(_) => Self { code: NO_DEVICE, error: error.into() },
+            other => Self::failed(other),
+        }
     }
 }
 

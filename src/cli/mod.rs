@@ -1,6 +1,6 @@
-//! Floor 6: the command line. Data on stdout, progress and logs on stderr.
+//! Floor 7: the command line. Data on stdout, progress and logs on stderr.
 //!
-//! Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device, 130 interrupted.
+//! Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device or display, 130 interrupted.
 
 mod args;
 mod compare;
@@ -11,10 +11,13 @@ mod progress;
 mod render;
 mod signals;
 mod truth;
+mod view;
 
 use std::time::Instant;
 
 use clap::{CommandFactory, Parser, Subcommand};
+
+use crate::window;
 
 pub use failure::Failure;
 
@@ -27,12 +30,15 @@ pub struct Cli {
 }
 
 const EXIT_CODES: &str =
-    "Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device, 130 interrupted";
+    "Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device or display, 130 interrupted";
 
 #[derive(Subcommand)]
 enum Command {
     /// Render a scene; write its layers, picture, timings and account of light
     Render(args::RenderArgs),
+    /// Show a scene in a window: orbit, zoom, layers, methods, and what each stage takes
+    #[command(after_help = window::help())]
+    View(view::ViewArgs),
     /// Judge pictures against a reference over the receiver region, by eight measures and their uncertainty
     Compare(compare::CompareArgs),
     /// Trace a scene's reference in float64 on the CPU, with its variance
@@ -57,6 +63,7 @@ impl Cli {
         signals::file_size_limit_is_an_error()?;
         match self.command {
             Command::Render(args) => render::run(&args, started),
+            Command::View(args) => view::run(&args),
             Command::Compare(args) => compare::run(&args),
             Command::Truth(args) => truth::run(&args),
             Command::Plan(args) => list::plan(&args),

@@ -8,6 +8,7 @@ use std::{
     time::Instant,
 };
 
+use anyhow::anyhow;
 use clap::Args;
 use std::io::{ErrorKind, Write};
 

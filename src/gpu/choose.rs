@@ -109,7 +109,7 @@ const STORAGE_BUFFERS: u32 = 12;
 /// Every device the loader finds.
 pub fn list_devices() -> Result<Vec<DeviceInfo>, GpuError> {
     let entry = super::device::load()?;
-    let instance = super::device::OwnedInstance::new(&entry, false)?;
+    let instance = super::device::OwnedInstance::new(&entry, false, &[])?;
     inspect(&instance.handle)
 }
 

@@ -33,6 +33,9 @@ pub enum GpuError {
         /// What it lacks.
         missing: String,
     },
+    /// A window was asked for and cannot be shown.
+    #[error("no window can be shown: {0}")]
+    NoScreen(String),
     /// A layer that was asked for is not installed.
     #[error("validation layer {0} is not installed (Debian, Ubuntu: vulkan-validationlayers, or run scripts/setup)")]
     NoLayer(String),

@@ -47,7 +47,7 @@ pub fn inspect_loader() -> Result<LoaderInfo, GpuError> {
 
 /// Loads the validation layer, and lets it go again.
 pub fn try_validation() -> Result<(), GpuError> {
-    OwnedInstance::new(&load()?, true).map(drop)
+    OwnedInstance::new(&load()?, true, &[]).map(drop)
 }
 
 /// A Vulkan version as it is read.

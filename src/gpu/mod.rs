@@ -7,6 +7,7 @@
 
 pub mod access;
 mod capture;
+mod chain;
 mod choose;
 mod device;
 mod error;
@@ -18,7 +19,10 @@ mod plan;
 mod program;
 mod record;
 mod reflect;
+mod screen;
 mod shader;
+mod show;
+mod surface;
 mod timer;
 
 pub use access::Access;
@@ -33,5 +37,8 @@ pub use plan::{
 };
 pub use program::{Program, Reused};
 pub use reflect::{BlockMember, Reflection};
+pub use screen::{Look, Screen};
 pub use shader::{ShaderKind, Sources, spirv_version};
+pub use show::SHOW;
+pub use surface::OnScreen;
 pub use timer::{FrameTimes, PassCounters};
