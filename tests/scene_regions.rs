@@ -94,7 +94,7 @@ impl Glass {
             })
             .collect();
         let bvh = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Default::default());
-        Glass { corners, normals, bvh, ior: *ior }
+        Glass { corners, normals, bvh, ior: ior[0] }
     }
 
     /// Nearest hit but for the triangle the ray starts on.

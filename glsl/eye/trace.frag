@@ -65,7 +65,7 @@ void split(Surface s, vec3 d, vec3 share, uint media, int events) {
 }
 
 void look(Surface s, vec3 d) {
-    split(s, d, eye_transmits(s.p), media_before(s, d, frame.data.eye_media), 0);
+    split(s, d, of_traced_bands(eye_transmits(s.p)), media_before(s, d, frame.data.eye_media), 0);
     while (branch_count > 0) {
         Branch b = branches[--branch_count];
         Hit hit;
@@ -91,7 +91,12 @@ void main() {
         Surface s;
         vec3 d;
         if (!eye_surface(sample_texel(pixel, k), s, d)) continue;
-        if (scene_materials.data[s.material].kind != MATERIAL_DIFFUSE) look(s, d);
+        if (scene_materials.data[s.material].kind == MATERIAL_DIFFUSE) continue;
+#ifdef DISPERSIVE
+        for (traced_band = 0; traced_band < 3; traced_band++) look(s, d);
+#else
+        look(s, d);
+#endif
     }
     direct /= float(samples);
     caustic /= float(samples);

@@ -70,6 +70,10 @@ bool is_emitted(LightSample light, bool found, Hit first) {
 
 Photon trace_photon(LightSample light) {
     vec3 zero = vec3(0.0);
+#ifdef DISPERSIVE
+    traced_band = BAND;
+    light.flux = of_traced_bands(light.flux);
+#endif
     Photon p = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
     if (!any(greaterThan(light.flux, zero))) return p; // beyond a spot's edge
     vec3 o = light.origin, d = light.direction;

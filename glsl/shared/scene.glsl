@@ -2,6 +2,7 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
+// DISPERSIVE is defined where materials bend the bands apart: they are then traced apart.
 // The host defines HAS_SPHERES, HAS_QUADS, HAS_MESHES, HAS_BOXES, HAS_DISKS, HAS_CYLINDERS and HAS_PARABOLOIDS where a
 // scene has any, and NO_SPOTS where it has no spot: what it lacks is not compiled.
 #if defined(HAS_SPHERES) || defined(HAS_BOXES) || defined(HAS_DISKS) || defined(HAS_CYLINDERS) || \
@@ -46,7 +47,7 @@ const uint SHAPE_PARABOLOID = 6u; // z = x^2 + y^2 <= 1, x >= cut
 
 struct Material {
     uint kind;
-    float ior;
+    vec3 ior;        // of each band
     vec3 colour;     // albedo, or a mirror's reflectance
     vec3 absorption; // 1/m
 };

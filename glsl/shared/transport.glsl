@@ -34,8 +34,24 @@ bool media_hold(uint media, uint material) {
     return media_left(media, material) != media;
 }
 
+// The band that is traced; where nothing is dispersive, all bands are traced as one.
+#ifdef DISPERSIVE
+int traced_band = 0;
+#else
+const int traced_band = 0;
+#endif
+
 float medium_ior(uint medium) {
-    return medium == MEDIUM_AIR ? 1.0 : scene_materials.data[medium].ior;
+    return medium == MEDIUM_AIR ? 1.0 : scene_materials.data[medium].ior[traced_band];
+}
+
+// All bands, or the one that is traced alone.
+vec3 of_traced_bands(vec3 bands) {
+#ifdef DISPERSIVE
+    return mix(vec3(0.0), bands, equal(ivec3(0, 1, 2), ivec3(traced_band)));
+#else
+    return bands;
+#endif
 }
 
 // The media on the far side of a dielectric surface that a ray along d meets.

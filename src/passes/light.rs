@@ -89,6 +89,8 @@ pub struct Emission {
     pub light: usize,
     /// Its view.
     pub view: View,
+    /// The band it sends, where the scene bends bands apart; else all.
+    pub band: Option<usize>,
 }
 
 /// The photon buffer of the view at hand: columns by kind.
@@ -159,7 +161,9 @@ pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Resul
             LightKind::Spot { position, beam, .. } if !shared => beam_view(view, position, &beam, &content),
             _ => Some(view),
         };
-        all.extend(views.into_iter().filter_map(lit).map(|view| Emission { light, view }));
+        let bands: &[Option<usize>] = if scene.is_dispersive() { &[Some(0), Some(1), Some(2)] } else { &[None] };
+        let each = |view: View| bands.iter().map(move |&band| Emission { light, view, band });
+        all.extend(views.into_iter().filter_map(lit).flat_map(each));
     }
     Ok(all)
 }
@@ -206,13 +210,15 @@ struct SamplePush {
     view: u32,
 }
 
-/// The name of a pass of view `index`: plain where there is one view only.
+/// The name of a pass of view `index`: plain where there is one view only, else with the light, the number of its view
+/// where it has several, and the band where they are apart.
 pub fn view_name(base: &str, scene: &Scene, all: &[Emission], index: usize) -> String {
+    const BANDS: [&str; 3] = ["red", "green", "blue"];
     let Some(one) = all.get(index).filter(|_| all.len() > 1) else { return base.to_owned() };
-    let of_light = all.iter().filter(|e| e.light == one.light).count();
-    let before = all[..index].iter().filter(|e| e.light == one.light).count();
-    let name = &scene.lights[one.light].name;
-    if of_light > 1 { format!("{base}:{name}.{before}") } else { format!("{base}:{name}") }
+    let alike = |all: &[Emission]| all.iter().filter(|e| e.light == one.light && e.band == one.band).count();
+    let number = if alike(all) > 1 { format!(".{}", alike(&all[..index])) } else { String::new() };
+    let band = one.band.map_or(String::new(), |band| format!(".{}", BANDS[band]));
+    format!("{base}:{}{number}{band}", scene.lights[one.light].name)
 }
 
 /// The tracer over one view, which several passes run.
@@ -250,13 +256,13 @@ impl Tracing<'_> {
             light: self.emission.light as u32,
             view: self.index as u32,
         };
-        self.scene
-            .lights(self.scene.tracing(pass))
-            .read("light_views", self.views)
-            .define("EVENTS", events)
-            .define("REFLECT", reflect)
-            .push(&push)
-            .dispatch(shader, [self.groups(), self.groups(), 1], GROUP * GROUP);
+        let pass = self.scene.lights(self.scene.tracing(pass));
+        let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
+        pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect).push(&push).dispatch(
+            shader,
+            [self.groups(), self.groups(), 1],
+            GROUP * GROUP,
+        );
     }
 }
 

@@ -36,6 +36,7 @@ pub struct SceneBuffers {
     /// Kinds of shapes that there are.
     kinds: Vec<(u32, &'static str)>,
     has_spots: bool,
+    is_dispersive: bool,
 }
 
 impl SceneBuffers {
@@ -53,12 +54,14 @@ impl SceneBuffers {
             lights: (!scene.lights.is_empty()).then(|| plan.upload("scene/lights", &arrays.lights)),
             kinds: KINDS.into_iter().filter(|(kind, _)| any(*kind)).collect(),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
+            is_dispersive: scene.is_dispersive(),
         }
     }
 
     /// For a pass that makes surfaces from hits.
     pub fn surfaces<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         let pass = self.shapes(pass).offer("scene_instances", self.instances).offer("scene_materials", self.materials);
+        let pass = if self.is_dispersive { pass.define("DISPERSIVE", 1) } else { pass };
         match self.meshes {
             Some((triangles, normals)) => pass.offer("scene_triangles", triangles).offer("scene_normals", normals),
             None => pass,

@@ -5,6 +5,7 @@ use super::{
     Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source,
     error::SceneError,
     file::{CameraFile, Floats, MaterialFile, SceneFile},
+    index::index,
     light::light,
     load::Files,
     locate::Key,
@@ -12,8 +13,6 @@ use super::{
     patch,
 };
 
-/// Indices of refraction: beyond any real one on both sides.
-const INDICES: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 /// Sine between a camera's axis and its up vector below which the picture has no upright.
 const PARALLEL: f64 = 1e-6;
 /// Degrees: fields of view whose tangent single precision still tells from zero and from infinity.
@@ -76,12 +75,7 @@ fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> 
         (None, Some(dielectric), None) => {
             let key = key.key("dielectric");
             Ok(MaterialKind::Dielectric {
-                ior: key.key("ior").number(
-                    dielectric.ior,
-                    INDICES,
-                    "an index of refraction",
-                    "glass has about 1.5, water 1.33",
-                )?,
+                ior: index(&key.key("ior"), &dielectric.ior)?,
                 absorption: key.key("absorption").strength(dielectric.absorption, "an absorption in 1/m")?,
             })
         }

@@ -6,6 +6,8 @@ use serde::{
     de::{Error, IgnoredAny, SeqAccess, Unexpected, Visitor},
 };
 
+use super::index::IndexFile;
+
 /// The one version there is.
 pub const VERSION: i64 = 1;
 
@@ -178,7 +180,7 @@ pub struct DiffuseFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DielectricFile {
-    pub ior: f64,
+    pub ior: IndexFile,
     #[serde(default)]
     pub absorption: Colour,
 }

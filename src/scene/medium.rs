@@ -111,7 +111,7 @@ mod tests {
     /// dielectric of which the index is the object's.
     fn of(shapes: Vec<Shape>) -> Scene {
         let mut scene = Scene::load("glass-sphere", &[]).unwrap();
-        let kind = MaterialKind::Dielectric { ior: 1.5, absorption: [0.0; 3] };
+        let kind = MaterialKind::Dielectric { ior: [1.5; 3], absorption: [0.0; 3] };
         scene.materials = (0..shapes.len()).map(|k| Material { name: k.to_string(), kind: kind.clone() }).collect();
         let object = |(k, shape)| Object { name: format!("{k}"), shape, material: k, visible_to_camera: true };
         scene.objects = shapes.into_iter().enumerate().map(object).collect();

@@ -16,6 +16,7 @@ mod class;
 mod error;
 mod file;
 mod format;
+mod index;
 mod light;
 mod load;
 mod locate;
@@ -200,8 +201,8 @@ pub enum MaterialKind {
     },
     /// Smooth and clear.
     Dielectric {
-        /// Index of refraction against vacuum.
-        ior: f64,
+        /// Index of refraction against vacuum, of each band.
+        ior: [f64; 3],
         /// 1/m
         absorption: [f64; 3],
     },
@@ -213,6 +214,11 @@ pub enum MaterialKind {
 }
 
 impl Material {
+    /// Whether it bends the bands apart.
+    pub fn is_dispersive(&self) -> bool {
+        matches!(self.kind, MaterialKind::Dielectric { ior: [r, g, b], .. } if r != g || g != b)
+    }
+
     /// Whether it refracts or reflects without scattering.
     pub fn is_specular(&self) -> bool {
         !matches!(self.kind, MaterialKind::Diffuse { .. })
@@ -276,6 +282,11 @@ impl Scene {
     /// Name and title of every scene inside the program, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
+    }
+
+    /// Whether anything bends the bands apart; only then are they traced apart.
+    pub fn is_dispersive(&self) -> bool {
+        self.objects.iter().any(|object| self.materials[object.material].is_dispersive())
     }
 
     /// Whether anything refracts or reflects; without it there is no caustic.

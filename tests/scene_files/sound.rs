@@ -34,7 +34,7 @@ fn the_base_scene_is_read_as_written() {
     assert_eq!(names(scene.cameras.keys().collect()), "main region");
     assert_eq!(scene.objects[0].material, 0);
     assert!(scene.objects[0].visible_to_camera && scene.has_specular());
-    assert_eq!(scene.materials[0].kind, MaterialKind::Dielectric { ior: 1.5, absorption: [0.0, 0.1, 0.0] });
+    assert_eq!(scene.materials[0].kind, MaterialKind::Dielectric { ior: [1.5; 3], absorption: [0.0, 0.1, 0.0] });
     assert_eq!(scene.lights[0].kind, LightKind::Point { position: dvec3(1.0, 3.0, 0.0), intensity: [20.0; 3] });
     assert_eq!(scene.lights[1].kind, LightKind::Directional { direction: DVec3::NEG_Y, irradiance: [1.0; 3] });
     assert_eq!(scene.region.normal(), DVec3::Y);
@@ -136,7 +136,7 @@ fn overrides_are_applied_checked_and_kept() {
         ("objects.floor.material", "'white'"),
     ];
     let scene = folder.load(BASE, &set).unwrap();
-    assert!(matches!(scene.materials[0].kind, MaterialKind::Dielectric { ior: 1.33, .. }));
+    assert!(matches!(scene.materials[0].kind, MaterialKind::Dielectric { ior: [1.33, 1.33, 1.33], .. }));
     assert_eq!(quad(&scene, "floor")[0].y, -2.0);
     assert_eq!(scene.region.center.y, -2.0);
     assert_eq!(scene.paths, PathClass::All(3));
@@ -176,7 +176,7 @@ fn what_the_file_leaves_out_can_be_set() {
         assert!(scene.cameras["main"].up == DVec3::X && scene.cameras["main"].hides_specular, "{key}");
     }
     let scene = folder.load(&bare, &[("materials.glass.absorption", "0.5")]).unwrap();
-    assert_eq!(scene.materials[0].kind, MaterialKind::Dielectric { ior: 1.5, absorption: [0.5; 3] });
+    assert_eq!(scene.materials[0].kind, MaterialKind::Dielectric { ior: [1.5; 3], absorption: [0.5; 3] });
     assert!(scene.source.resolved.contains("absorption = 0.5"));
 }
 

@@ -114,7 +114,8 @@ pub struct MapView {
 fn receiving_views(job: &Job<'_>, side: u32, diameter: u32) -> Vec<MapView> {
     if job.settings.choice(&light::VIEW) == "shared" {
         let of = |e: &Emission| MapView { view: e.view.data(), receiver: ANY, light: e.light as u32 };
-        return job.emissions.iter().map(of).collect();
+        // Bands that are traced apart share their light's layer.
+        return job.emissions.iter().filter(|e| matches!(e.band, None | Some(0))).map(of).collect();
     }
     let r = job.receiver;
     let full = (0.5 * f64::from(diameter) + 1.0).min(0.25 * f64::from(side));

@@ -55,7 +55,7 @@ pub struct Material {
     /// One of `MATERIAL_*`.
     pub kind: u32,
     /// Index of refraction; 1 for what has none.
-    pub ior: f32,
+    pub ior: [f32; 3],
     /// Albedo, or a mirror's reflectance.
     pub colour: [f32; 3],
     /// 1/m

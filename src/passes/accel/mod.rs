@@ -229,13 +229,13 @@ fn bounds(mesh: &Mesh, to_world: &DAffine3) -> (DVec3, DVec3) {
 fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
     let name = &material.name;
     let (kind, ior, colour, absorption) = match material.kind {
-        MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, 1.0, albedo, [0.0; 3]),
+        MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, [1.0; 3], albedo, [0.0; 3]),
         MaterialKind::Dielectric { ior, absorption } => (MATERIAL_DIELECTRIC, ior, [1.0; 3], absorption),
-        MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, 1.0, reflectance, [0.0; 3]),
+        MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, [1.0; 3], reflectance, [0.0; 3]),
     };
     Ok(Material {
         kind,
-        ior: number(name, "its index", ior)?,
+        ior: vector(name, "its index", ior.into())?,
         colour: vector(name, "its colour", colour.into())?,
         absorption: vector(name, "its absorption", absorption.into())?,
     })

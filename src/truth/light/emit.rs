@@ -74,12 +74,23 @@ impl Emission {
         }
     }
 
+    /// The photons of a point of the unit square, one for all bands, or one for each where they are bent apart.
+    pub fn starts(&self, at: DVec2, flux: DVec3, apart: bool) -> impl Iterator<Item = Start> {
+        let whole = self.start(at, flux);
+        let bands = if apart { 3 } else { 1 };
+        let one = move |band: usize| {
+            let flux = DVec3::AXES[band] * whole.flux;
+            if apart { Start { flux, band, ..whole } } else { whole }
+        };
+        (0..bands).map(one)
+    }
+
     /// The photon of a point of the unit square; equal areas of it carry equal flux.
-    pub fn start(&self, at: DVec2, flux: DVec3) -> Start {
+    fn start(&self, at: DVec2, flux: DVec3) -> Start {
         match self {
             Self::Rectangle { corner, u, v, d, .. } => {
                 let ray = Ray { o: corner + at.x * u + at.y * v, d: *d, left: None };
-                Start { ray, flux, media: None }
+                Start { ray, flux, media: None, band: 0 }
             }
             Self::Cone { apex, frame: [axis, x, y], height, media, beam, .. } => {
                 let below = height * at.x;
@@ -88,7 +99,7 @@ impl Emission {
                 let d = (1.0 - below) * axis + across * (cos * x + sin * y);
                 let d = d.normalize();
                 let flux = flux * beam.map_or(1.0, |beam| beam.share(d));
-                Start { ray: Ray { o: *apex, d, left: None }, flux, media: Some(*media) }
+                Start { ray: Ray { o: *apex, d, left: None }, flux, media: Some(*media), band: 0 }
             }
         }
     }

@@ -66,9 +66,9 @@ impl<'a> Photons<'a> {
             let flux = emission.flux() / (*count).max(1) as f64;
             for i in 0..*count {
                 let faint = Faint::Choose(stream(&[choices, i]));
-                let of_one =
-                    walk::walk(self.space, self.class, &emission.start(points.point(i), flux), faint, &mut land);
-                sum = sum.plus(&of_one);
+                for start in emission.starts(points.point(i), flux, self.space.scene.is_dispersive()) {
+                    sum = sum.plus(&walk::walk(self.space, self.class, &start, faint, &mut land));
+                }
             }
         }
         sum
@@ -77,14 +77,10 @@ impl<'a> Photons<'a> {
 
 /// Every landing of the ray through a point of an emission's unit square, its flux a share of what was emitted. Nothing is
 /// left to chance, so that neighbouring points have neighbouring landings.
-pub fn follow(
-    space: &Space,
-    class: PathClass,
-    emission: &Emission,
-    at: DVec2,
-    mut land: impl FnMut(&Landing),
-) -> Balance {
-    walk::walk(space, class, &emission.start(at, DVec3::ONE), Faint::Drop, &mut land)
+pub fn follow(space: &Space, class: PathClass, emission: &Emission, at: DVec2, mut land: impl FnMut(&Landing)) {
+    for start in emission.starts(at, DVec3::ONE, space.scene.is_dispersive()) {
+        walk::walk(space, class, &start, Faint::Drop, &mut land);
+    }
 }
 
 impl Balance {

@@ -43,6 +43,8 @@ pub struct Start {
     /// The media about a light that has a place. Light from infinity starts in whatever its first surface bounds, and
     /// loses nothing on the way there: how far it came is not defined.
     pub media: Option<Media>,
+    /// The band whose indices bend it; its flux has no other, unless all bands bend alike.
+    pub band: usize,
 }
 
 /// A photon at the first diffuse surface of its path.
@@ -93,7 +95,7 @@ struct Branch {
 /// Traces one photon and shows its landings to `land`.
 pub fn walk(space: &Space, class: PathClass, start: &Start, faint: Faint, land: &mut impl FnMut(&Landing)) -> Balance {
     let (ray, flux) = (start.ray, start.flux);
-    let mut walk = Walk { space, class, faint, open: vec![], balance: Balance::default() };
+    let mut walk = Walk { space, class, band: start.band, faint, open: vec![], balance: Balance::default() };
     let Some(mut surface) = space.nearest(&ray, mask::ALL) else { return walk.balance };
     if !space.material(&surface).is_specular() {
         return walk.balance; // direct light
@@ -104,7 +106,8 @@ pub fn walk(space: &Space, class: PathClass, start: &Start, faint: Faint, land: 
     if dielectric && surface.ng.dot(ray.d) > 0.0 && !media.holds(surface.material) {
         media = media.entered(surface.material); // from infinity, or through a hole
     }
-    let mut branch = Branch { ray, flux, share: 1.0, chain: Chain::default(), path: 0, media, crossed: 0 };
+    let path = if start.band == 0 { 0 } else { mix(start.band as u64) };
+    let mut branch = Branch { ray, flux, share: 1.0, chain: Chain::default(), path, media, crossed: 0 };
     if start.media.is_some() {
         walk.travel(&mut branch, surface.distance);
     }
@@ -136,6 +139,7 @@ pub fn walk(space: &Space, class: PathClass, start: &Start, faint: Faint, land: 
 struct Walk<'a> {
     space: &'a Space<'a>,
     class: PathClass,
+    band: usize,
     faint: Faint,
     open: Vec<Branch>,
     balance: Balance,
@@ -179,7 +183,7 @@ impl Walk<'_> {
     /// An interface: Fresnel's shares go on, or by chance one of them.
     fn split(&mut self, branch: &Branch, surface: &Surface, after: Media) {
         let d = branch.ray.d;
-        let (from, to) = (index(self.space, branch.media), index(self.space, after));
+        let (from, to) = (self.index(branch.media), self.index(after));
         let through = surface.transmit(d, from, to);
         let back = surface.reflect(d, from, to);
         // The two are bent by one normal or, rarely, by two: what passes decides, the rest goes back.
@@ -197,6 +201,14 @@ impl Walk<'_> {
         let w = weigh(1.0 - passes, false);
         if w > 0.0 {
             self.push(branch.bent(surface, back, false, branch.media, branch.flux * w, branch.share * w));
+        }
+    }
+
+    /// The index of the innermost medium; of none, that of air.
+    fn index(&self, media: Media) -> f64 {
+        match media.innermost().map(|m| &self.space.scene.materials[m].kind) {
+            Some(MaterialKind::Dielectric { ior, .. }) => ior[self.band],
+            _ => 1.0,
         }
     }
 
@@ -225,13 +237,5 @@ impl Branch {
             media,
             crossed: self.crossed + 1,
         }
-    }
-}
-
-/// The index of the innermost medium; of none, that of air.
-fn index(space: &Space, media: Media) -> f64 {
-    match media.innermost().map(|m| &space.scene.materials[m].kind) {
-        Some(MaterialKind::Dielectric { ior, .. }) => *ior,
-        _ => 1.0,
     }
 }
