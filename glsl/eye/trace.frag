@@ -42,9 +42,9 @@ void split(Surface s, vec3 d, vec3 share, uint media, int events) {
     uint bent = 0u;
     float reflectance;
     vec3 reflected, refracted;
-    if (m.kind == MATERIAL_MIRROR) {
+    if (is_opaque_mirror(m)) {
         bend_reflect(s, d, 1.0, 1.0, reflected, reflectance, bent);
-        follow(s, reflected, share * m.colour, media, events + 1);
+        follow(s, reflected, share * mirror_share(m, d, reflected, media), media, events + 1);
         return;
     }
     uint beyond = media_beyond(s, d, media);

@@ -23,14 +23,15 @@ void travel(inout Photon p, uint medium, float metres) {
 // One specular event: bends d, moves flux to its buckets, changes the media. The status it leaves, VALID to go on.
 uint interact(inout Photon p, Surface s, inout vec3 d, inout uint media) {
     Material m = scene_materials.data[s.material];
-    if (m.kind == MATERIAL_MIRROR) {
+    if (is_opaque_mirror(m)) {
 #if REFLECT
         float unused;
         vec3 r;
         bend_reflect(s, d, 1.0, 1.0, r, unused, p.bent);
+        vec3 share = mirror_share(m, d, r, media);
         d = r;
-        p.absorbed += p.flux * (1.0 - m.colour);
-        p.flux *= m.colour;
+        p.absorbed += p.flux * (1.0 - share);
+        p.flux *= share;
         return PHOTON_VALID;
 #else
         return PHOTON_BLOCKED;

@@ -40,6 +40,23 @@ float fresnel(float cos_i, float n_from, float n_to) {
     return clamp(0.5 * (rs * rs + rp * rp), 0.0, 1.0);
 }
 
+// Exact unpolarised reflectance of a metal of complex index eta + i k relative to the medium before it (Lagarde, Memo on
+// Fresnel equations, 2013); one at grazing.
+float fresnel_conductor(float cos_i, float eta, float k) {
+    if (eta == 1.0 && k == 0.0) return 0.0;
+    float c = clamp(cos_i, 0.0, 1.0);
+    float cos2 = c * c;
+    float sin2 = 1.0 - cos2;
+    float t0 = eta * eta - k * k - sin2;
+    float a2b2 = sqrt(t0 * t0 + 4.0 * eta * eta * k * k);
+    float a = sqrt(max(0.5 * (a2b2 + t0), 0.0));
+    float sum_s = a2b2 + cos2 + 2.0 * a * c;
+    float s = sum_s > 0.0 ? max((a2b2 + cos2 - 2.0 * a * c) / sum_s, 0.0) : 1.0;
+    float sum_p = cos2 * a2b2 + sin2 * sin2 + 2.0 * a * c * sin2;
+    float p = sum_p > 0.0 ? s * max((cos2 * a2b2 + sin2 * sin2 - 2.0 * a * c * sin2) / sum_p, 0.0) : s;
+    return clamp(0.5 * (s + p), 0.0, 1.0);
+}
+
 // Snell's law: d unit, n unit and facing against d, eta = n_from / n_to. False on total reflection (t is then d).
 // At eta = 1 the direction is d itself, at grazing too.
 bool refract_ray(vec3 d, vec3 n, float eta, out vec3 t) {

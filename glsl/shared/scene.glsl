@@ -47,14 +47,15 @@ const uint SHAPE_PARABOLOID = 6u; // z = x^2 + y^2 <= 1, x >= cut
 
 struct Material {
     uint kind;
-    vec3 ior;        // of each band
+    vec3 ior;        // of each band; of a conductor, the real part
     vec3 colour;     // albedo, or a mirror's reflectance
-    vec3 absorption; // 1/m
+    vec3 absorption; // 1/m; of a conductor, the imaginary part of its index
 };
 
 const uint MATERIAL_DIFFUSE = 0u;
 const uint MATERIAL_DIELECTRIC = 1u;
 const uint MATERIAL_MIRROR = 2u;
+const uint MATERIAL_CONDUCTOR = 3u;
 
 struct Light {
     uint kind;

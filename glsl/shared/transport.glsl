@@ -54,6 +54,23 @@ vec3 of_traced_bands(vec3 bands) {
 #endif
 }
 
+bool is_opaque_mirror(Material m) {
+    return m.kind == MATERIAL_MIRROR || m.kind == MATERIAL_CONDUCTOR;
+}
+
+// What a mirror sends back of light that came along d and goes on along r, from within these media.
+vec3 mirror_share(Material m, vec3 d, vec3 r, uint media) {
+    if (m.kind == MATERIAL_MIRROR) return m.colour;
+    float cosine = sqrt(max(0.5 - 0.5 * dot(d, r), 0.0));
+    vec3 share = vec3(0.0);
+    uint medium = innermost(media);
+    for (int band = 0; band < 3; band++) {
+        float n = medium == MEDIUM_AIR ? 1.0 : scene_materials.data[medium].ior[band];
+        share[band] = fresnel_conductor(cosine, m.ior[band] / n, m.absorption[band] / n);
+    }
+    return share;
+}
+
 // The media on the far side of a dielectric surface that a ray along d meets.
 uint media_beyond(Surface s, vec3 d, uint media) {
     return dot(d, s.ng) < 0.0 ? media_entered(media, s.material) : media_left(media, s.material);

@@ -54,6 +54,30 @@ pub fn fresnel(cos_i: f64, n_from: f64, n_to: f64) -> f64 {
     0.5 * (s * s + p * p)
 }
 
+/// The share of unpolarised light that a smooth metal reflects, in [0, 1]; it absorbs the rest.
+///
+/// `eta` + i `k` is its complex index relative to the medium before it, `cos_i` = |d·n|, clamped to [0, 1] (Born & Wolf,
+/// *Principles of Optics*, §14.2; in real numbers as by Lagarde 2013, "Memo on Fresnel equations"). Edges: 1 at grazing
+/// incidence; with k = 0 that of a dielectric, total reflection included; 0 for eta = 1, k = 0, no surface, at every angle.
+pub fn fresnel_conductor(cos_i: f64, eta: f64, k: f64) -> f64 {
+    if eta == 1.0 && k == 0.0 {
+        return 0.0;
+    }
+    let c = cos_i.clamp(0.0, 1.0);
+    let (cos2, sin2) = (c * c, 1.0 - c * c);
+    let t0 = eta * eta - k * k - sin2;
+    let a2b2 = t0.hypot(2.0 * eta * k);
+    let a = (0.5 * (a2b2 + t0)).max(0.0).sqrt();
+    let s = ratio(a2b2 + cos2, 2.0 * a * c);
+    let p = s * ratio(cos2 * a2b2 + sin2 * sin2, 2.0 * a * c * sin2);
+    0.5 * (s + p)
+}
+
+/// (a − b)/(a + b) of a ≥ b ≥ 0; 1 where both are 0: what is nothing on both sides reflects all.
+fn ratio(a: f64, b: f64) -> f64 {
+    if a + b == 0.0 { 1.0 } else { ((a - b) / (a + b)).max(0.0) }
+}
+
 /// (a − b)/(a + b) for a, b ≥ 0, and 0 where both are 0.
 fn amplitude(a: f64, b: f64) -> f64 {
     if a + b == 0.0 { 0.0 } else { (a - b) / (a + b) }
@@ -204,5 +228,31 @@ mod tests {
         assert_eq!(transmittance(0.0, f64::INFINITY), 1.0);
         assert_eq!(transmittance(1.0, f64::INFINITY), 0.0);
         assert_eq!(transmittance(5.0, 0.0), 1.0);
+    }
+
+    /// Roundings of some twenty operations; at the critical angle the root of one.
+    const METAL: f64 = 1e-8;
+
+    #[test]
+    fn a_metal_without_extinction_is_a_dielectric() {
+        for eta in [0.6, 1.0, 1.5, 2.4] {
+            for step in 0..=100 {
+                let c = f64::from(step) / 100.0;
+                let (metal, glass) = (fresnel_conductor(c, eta, 0.0), fresnel(c, 1.0, eta));
+                assert!((metal - glass).abs() < METAL, "η {eta}, cosine {c}: {metal} for {glass}");
+            }
+        }
+    }
+
+    /// Straight on: ((η − 1)² + k²)/((η + 1)² + k²). Silver, gold and aluminium at 0.55 µm.
+    #[test]
+    fn metals_straight_on_and_grazing() {
+        for (eta, k) in [(0.06f64, 3.6f64), (0.43, 2.45), (0.96, 6.7), (1.0, 1.0), (3.0, 0.1)] {
+            let exact = ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
+            assert!((fresnel_conductor(1.0, eta, k) - exact).abs() < METAL);
+            assert_eq!(fresnel_conductor(0.0, eta, k), 1.0);
+            let all = (0..=1000).map(|i| fresnel_conductor(f64::from(i) / 1000.0, eta, k));
+            assert!(all.into_iter().all(|r| (0.0..=1.0).contains(&r)));
+        }
     }
 }

@@ -10,5 +10,5 @@
 mod interface;
 mod texel;
 
-pub use interface::{fresnel, reflect, refract, transmittance};
+pub use interface::{fresnel, fresnel_conductor, reflect, refract, transmittance};
 pub use texel::{footprint_directional, footprint_point, texel_solid_angle};

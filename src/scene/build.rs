@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use super::{
     Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source,
     error::SceneError,
-    file::{CameraFile, Floats, MaterialFile, SceneFile},
+    file::{CameraFile, Colour, Floats, MaterialFile, SceneFile},
     index::index,
     light::light,
     load::Files,
@@ -13,6 +13,8 @@ use super::{
     patch,
 };
 
+/// Parts of a metal's complex index.
+const METALS: std::ops::RangeInclusive<f64> = 0.0..=100.0;
 /// Sine between a camera's axis and its up vector below which the picture has no upright.
 const PARALLEL: f64 = 1e-6;
 /// Degrees: fields of view whose tangent single precision still tells from zero and from infinity.
@@ -67,23 +69,36 @@ fn each<F, T>(
 }
 
 fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> {
-    match (&file.diffuse, &file.dielectric, &file.mirror) {
-        (Some(diffuse), None, None) => {
+    match (&file.diffuse, &file.dielectric, &file.mirror, &file.conductor) {
+        (Some(diffuse), None, None, None) => {
             let albedo = key.key("diffuse").key("albedo").share(diffuse.albedo)?;
             Ok(MaterialKind::Diffuse { albedo })
         }
-        (None, Some(dielectric), None) => {
+        (None, Some(dielectric), None, None) => {
             let key = key.key("dielectric");
             Ok(MaterialKind::Dielectric {
                 ior: index(&key.key("ior"), &dielectric.ior)?,
                 absorption: key.key("absorption").strength(dielectric.absorption, "an absorption in 1/m")?,
             })
         }
-        (None, None, Some(mirror)) => {
+        (None, None, Some(mirror), None) => {
             let reflectance = key.key("mirror").key("reflectance").share(mirror.reflectance)?;
             Ok(MaterialKind::Mirror { reflectance })
         }
-        _ => Err(key.one_kind(&["diffuse", "dielectric", "mirror"])),
+        (None, None, None, Some(metal)) => {
+            let key = key.key("conductor");
+            let part = |name: &str, value: Colour| {
+                let key = key.key(name);
+                let remedy = "gold has about eta 0.4 and k 2.4 in green, silver 0.06 and 3.6";
+                value
+                    .0
+                    .iter()
+                    .try_for_each(|&band| key.number(band, METALS, "part of a complex index", remedy).map(drop))?;
+                Ok(value.0)
+            };
+            Ok(MaterialKind::Conductor { eta: part("eta", metal.eta)?, k: part("k", metal.k)? })
+        }
+        _ => Err(key.one_kind(&["diffuse", "dielectric", "mirror", "conductor"])),
     }
 }
 

@@ -169,6 +169,7 @@ pub struct MaterialFile {
     pub diffuse: Option<DiffuseFile>,
     pub dielectric: Option<DielectricFile>,
     pub mirror: Option<MirrorFile>,
+    pub conductor: Option<ConductorFile>,
 }
 
 #[derive(Deserialize)]
@@ -189,6 +190,13 @@ pub struct DielectricFile {
 #[serde(deny_unknown_fields)]
 pub struct MirrorFile {
     pub reflectance: Colour,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConductorFile {
+    pub eta: Colour,
+    pub k: Colour,
 }
 
 #[derive(Deserialize)]

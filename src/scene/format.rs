@@ -1,8 +1,9 @@
 //! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
 
 /// Tables that say of what kind their parent is; a dotted key may leave them out.
-pub const KINDS: [&str; 15] = [
+pub const KINDS: [&str; 16] = [
     "box",
+    "conductor",
     "cylinder",
     "dielectric",
     "diffuse",
@@ -41,7 +42,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _] => {
             &["material", "visible_to_camera", "sphere", "quad", "box", "disk", "cylinder", "paraboloid", "mesh"]
         }
-        ["materials", _] => &["diffuse", "dielectric", "mirror"],
+        ["materials", _] => &["diffuse", "dielectric", "mirror", "conductor"],
         ["lights", _] => &["directional", "point", "spot"],
         ["cameras", _, "pinhole"] => &["position", "target", "up", "hides_specular", "fov_y"],
         ["cameras", _, "orthographic"] => &["position", "target", "up", "hides_specular", "height", "width"],
@@ -55,6 +56,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["materials", _, "diffuse"] => &["albedo"],
         ["materials", _, "dielectric"] => &["ior", "absorption"],
         ["materials", _, "mirror"] => &["reflectance"],
+        ["materials", _, "conductor"] => &["eta", "k"],
         ["lights", _, "directional"] => &["direction", "irradiance"],
         ["lights", _, "point"] => &["position", "intensity"],
         ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "outer"],
@@ -95,6 +97,7 @@ mod tests {
         assert_eq!(keys(&["materials", "", "diffuse"]), known::<file::DiffuseFile>());
         assert_eq!(keys(&["materials", "", "dielectric"]), known::<file::DielectricFile>());
         assert_eq!(keys(&["materials", "", "mirror"]), known::<file::MirrorFile>());
+        assert_eq!(keys(&["materials", "", "conductor"]), known::<file::ConductorFile>());
         assert_eq!(keys(&["lights", ""]), known::<file::LightFile>());
         assert_eq!(keys(&["lights", "", "directional"]), known::<file::DirectionalFile>());
         assert_eq!(keys(&["lights", "", "point"]), known::<file::PointFile>());

@@ -211,6 +211,13 @@ pub enum MaterialKind {
         /// Share of the flux reflected, 0 to 1, at every angle.
         reflectance: [f64; 3],
     },
+    /// A smooth metal: it reflects by Fresnel's equations and absorbs the rest.
+    Conductor {
+        /// Real part of its complex index against vacuum.
+        eta: [f64; 3],
+        /// Imaginary part (the extinction coefficient).
+        k: [f64; 3],
+    },
 }
 
 impl Material {

@@ -115,6 +115,8 @@ pub const MATERIAL_DIFFUSE: u32 = 0;
 pub const MATERIAL_DIELECTRIC: u32 = 1;
 /// Reflects a share.
 pub const MATERIAL_MIRROR: u32 = 2;
+/// A mirror whose complex index stands in `ior` and `absorption`.
+pub const MATERIAL_CONDUCTOR: u32 = 3;
 
 /// Parallel light.
 pub const LIGHT_DIRECTIONAL: u32 = 0;

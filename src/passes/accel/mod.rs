@@ -232,6 +232,7 @@ fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
         MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, [1.0; 3], albedo, [0.0; 3]),
         MaterialKind::Dielectric { ior, absorption } => (MATERIAL_DIELECTRIC, ior, [1.0; 3], absorption),
         MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, [1.0; 3], reflectance, [0.0; 3]),
+        MaterialKind::Conductor { eta, k } => (MATERIAL_CONDUCTOR, eta, [1.0; 3], k),
     };
     Ok(Material {
         kind,

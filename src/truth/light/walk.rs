@@ -12,7 +12,7 @@ use super::{
     sequence::{draw, mix},
 };
 use crate::{
-    optics::transmittance,
+    optics::{fresnel_conductor, transmittance},
     scene::{MaterialKind, PathClass},
     truth::trace::{Bend, Media, Ray, Space, Surface, mask},
 };
@@ -166,10 +166,11 @@ impl Walk<'_> {
             MaterialKind::Dielectric { .. } if d.dot(surface.ng) < 0.0 => branch.media.entered(surface.material),
             _ => branch.media.left(surface.material),
         };
-        if let MaterialKind::Mirror { reflectance } = self.space.material(surface).kind {
-            let flux = branch.flux * DVec3::from(reflectance);
+        let back = surface.reflect(d, 1.0, 1.0);
+        if let Some(share) = self.mirror(&self.space.material(surface).kind, d, back.d, branch.media) {
+            let flux = branch.flux * share;
             self.balance.absorbed += branch.flux - flux;
-            self.push(branch.bent(surface, surface.reflect(d, 1.0, 1.0), false, branch.media, flux, branch.share));
+            self.push(branch.bent(surface, back, false, branch.media, flux, branch.share));
             return;
         }
         if after.innermost() == branch.media.innermost() {
@@ -204,10 +205,31 @@ impl Walk<'_> {
         }
     }
 
-    /// The index of the innermost medium; of none, that of air.
+    /// What an opaque mirror sends back, of light along d that goes on along r; of anything else, `None`.
+    fn mirror(&self, kind: &MaterialKind, d: DVec3, r: DVec3, media: Media) -> Option<DVec3> {
+        match kind {
+            MaterialKind::Mirror { reflectance } => Some(DVec3::from(*reflectance)),
+            MaterialKind::Conductor { eta, k } => {
+                let cosine = (0.5 - 0.5 * d.dot(r)).max(0.0).sqrt();
+                let share = |band: usize| {
+                    let n = self.index_of(media, band);
+                    fresnel_conductor(cosine, eta[band] / n, k[band] / n)
+                };
+                Some(DVec3::new(share(0), share(1), share(2)))
+            }
+            MaterialKind::Diffuse { .. } | MaterialKind::Dielectric { .. } => None,
+        }
+    }
+
+    /// The index of the innermost medium for the band at hand.
     fn index(&self, media: Media) -> f64 {
+        self.index_of(media, self.band)
+    }
+
+    /// The index of the innermost medium; of none, that of air.
+    fn index_of(&self, media: Media, band: usize) -> f64 {
         match media.innermost().map(|m| &self.space.scene.materials[m].kind) {
-            Some(MaterialKind::Dielectric { ior, .. }) => ior[self.band],
+            Some(MaterialKind::Dielectric { ior, .. }) => ior[band],
             _ => 1.0,
         }
     }
