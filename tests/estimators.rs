@@ -133,6 +133,11 @@ fn on_flat_water() {
 }
 
 #[test]
+fn on_the_ring() {
+    hold("ring", None, "region", 80_000, 128);
+}
+
+#[test]
 fn through_a_pinhole() {
     hold("glass-sphere", None, "main", 200_000, 64);
 }

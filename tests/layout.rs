@@ -21,7 +21,7 @@ fn offsets_agree() {
         host!("Node", accel::Node { lo, count, hi, first }),
         host!("Triangle", accel::Triangle { a, b, c }),
         host!("TriangleNormals", accel::TriangleNormals { a, b, c }),
-        host!("Instance", accel::Instance { to_object, to_world, kind, material, object, root }),
+        host!("Instance", accel::Instance { to_object, to_world, kind, material, object, detail }),
         host!("Material", accel::Material { kind, ior, colour, absorption }),
         host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer }),
         host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),
@@ -29,7 +29,9 @@ fn offsets_agree() {
         host!("View", ViewData { origin, x0, right, x1, up, y0, forward, y1, near, far, perspective, pad }),
     ];
     let defines: Vec<_> =
-        [("EVENTS", "2"), ("REFLECT", "0"), ("LIGHT_COUNT", "1")].map(|(a, b)| (a.to_owned(), b.to_owned())).to_vec();
+        [("EVENTS", "2"), ("REFLECT", "0"), ("LIGHT_COUNT", "1"), ("HAS_QUADS", "1"), ("HAS_MESHES", "1")]
+            .map(|(a, b)| (a.to_owned(), b.to_owned()))
+            .to_vec();
     let provided = vec![("capture.glsl".to_owned(), "maps/capture.glsl".to_owned())];
     let mut seen: BTreeMap<(String, String), usize> = BTreeMap::new();
     for file in ["light/account.comp", "eye/direct.frag", "eye/gbuffer.vert"] {

@@ -1,9 +1,12 @@
 //! The rule by which a scene's receiver region is framed, held for every shipped scene.
 //!
-//! Sphere scenes: the square of ±1.5 radii about the axis. Elsewhere: the smallest rectangle that holds 99 % of the
+//! Sphere scenes: the square of ±1.5 radii about the axis; mirrors: a square about ring or focus that holds 99 %. Elsewhere: the smallest rectangle that holds 99 % of the
 //! flux of the scene's path class, or the whole receiver. For the mesh that takes a ray trace, done here in float64.
 use glam::{DVec2, DVec3, Vec3A};
-use nephroid::scene::{LightKind, MaterialKind, Scene, Shape};
+use nephroid::{
+    scene::{LightKind, MaterialKind, Scene, Shape},
+    truth::{light::Photons, trace::Space},
+};
 use obvhs::{
     BvhBuildParams,
     aabb::Aabb,
@@ -50,6 +53,37 @@ fn flat_water_frames_the_receiver() {
     let Shape::Quad { center, u, v } = scene.objects[scene.region.receiver].shape else { panic!("no quad") };
     assert_eq!([scene.region.center, scene.region.u, scene.region.v], [center, u, v]);
     assert_eq!([scene.extent.center, scene.extent.u, scene.extent.v], [center, u, v], "cut to the receiver");
+}
+
+/// Share of the class's flux that lands in the region, by a few photons of the truth.
+fn held(scene: &Scene) -> f64 {
+    let space = Space::new(scene);
+    let region = &scene.region;
+    let mut inside = 0.0;
+    let balance = Photons::new(&space, scene.paths, 1, 1 << 16).chunk(0, |landing| {
+        let way = landing.surface.p - region.center;
+        let within = |edge: DVec3| way.dot(edge).abs() <= edge.length_squared();
+        if landing.surface.object == region.receiver && within(region.u) && within(region.v) {
+            inside += landing.flux.element_sum();
+        }
+    });
+    inside / balance.landed.element_sum()
+}
+
+#[test]
+fn mirrors_frame_their_caustic() {
+    let ring = load("ring");
+    assert_eq!([ring.region.center, ring.region.u], [DVec3::ZERO, DVec3::X * 1.1], "about the axis");
+    let paraboloid = load("paraboloid");
+    let pixel = 2.0 * paraboloid.region.u.length() / 128.0;
+    let focus = (DVec3::Y * 0.5 - paraboloid.region.center) / pixel;
+    let [x, y] = [paraboloid.region.u, paraboloid.region.v].map(|edge| focus.dot(edge.normalize()));
+    assert!((x + 0.5).abs() < 1e-9 && (y + 0.5).abs() < 1e-9, "the focus is the middle of a pixel: {x} {y}");
+    for scene in [ring, paraboloid] {
+        let held = held(&scene);
+        println!("{}: {held:.4}", scene.name);
+        assert!(held >= SHARE, "{} holds {held}", scene.name);
+    }
 }
 
 /// A glass mesh with a hierarchy over its triangles: candidates in single precision, hits in double.

@@ -8,7 +8,7 @@
 #include "shared/bvh.glsl"
 #include "shared/frame.glsl"
 
-#ifndef NO_SPHERES
+#ifdef HAS_CAST
 layout(push_constant, scalar) uniform Push { ivec2 size; } push;
 #endif
 
@@ -20,17 +20,20 @@ layout(location = 0) out uvec4 seen;
 void main() {
     View eye = frame.data.eye;
     float depth = eye_depth;
-#ifndef NO_SPHERES
+    uint primitive = shape.y;
+    vec2 uv = shape_uv;
+#ifdef HAS_CAST
     Instance at = scene_instances.data[shape.x];
-    if (at.kind == SHAPE_SPHERE) {
+    if (at.kind != SHAPE_QUAD && at.kind != SHAPE_MESH) {
         vec3 o, d;
         view_ray(eye, gl_FragCoord.xy / vec2(push.size), o, d);
-        float t = hit_sphere(local_ray(map_point(at.to_object, o), map_vector(at.to_object, d)), NO_HIT);
+        LocalRay ray = local_ray(map_point(at.to_object, o), map_vector(at.to_object, d));
+        float t = hit_shape(at, ray, NO_HIT, primitive, uv);
         if (!(t < NO_HIT)) discard;
         depth = dot(o + t * d - eye.origin, eye.forward);
     }
 #endif
     if (depth < eye.near) discard; // an orthographic eye has no apex to clip what lies behind it
     gl_FragDepth = clamp((depth - eye.near) / (eye.far - eye.near), 0.0, 1.0);
-    seen = uvec4(shape.x + 1u, shape.y, floatBitsToUint(shape_uv));
+    seen = uvec4(shape.x + 1u, primitive, floatBitsToUint(uv));
 }

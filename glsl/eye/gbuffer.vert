@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// What the eye sees, rasterised: an instance a draw, vertices pulled from the scene. A quad is two triangles, a sphere
-// the box about it (the fragment shader intersects it exactly), a mesh its own triangles.
+// What the eye sees, rasterised: an instance a draw, vertices pulled from the scene. A quad is two triangles, a mesh its
+// own; of any other shape it is the box about it, and the fragment shader intersects it exactly.
 
 #include "shared/bvh.glsl"
 #include "shared/frame.glsl"
@@ -12,7 +12,7 @@ layout(location = 0) out vec2 shape_uv;
 layout(location = 1) out float eye_depth; // metres along the eye's forward axis
 layout(location = 2) flat out uvec2 shape; // instance, primitive
 
-const float ABOUT = 1.001; // the sphere touches its box; a rounded edge must not cut it
+const float ABOUT = 1.001; // a shape touches its box; a rounded edge must not cut it
 
 vec3 box_corner(int vertex) {
     int face = vertex / 6, corner = vertex % 6;
@@ -31,13 +31,15 @@ void main() {
     vec3 local = vec3(0.0);
     shape = uvec2(uint(gl_InstanceIndex), 0u);
     shape_uv = vec2(0.0);
-    if (at.kind == SHAPE_SPHERE) {
-        local = box_corner(gl_VertexIndex);
-    } else if (at.kind == SHAPE_QUAD) {
+    if (at.kind == SHAPE_QUAD) {
         shape_uv = quad_corner(gl_VertexIndex);
         local = vec3(shape_uv, 0.0);
+    } else if (at.kind != SHAPE_MESH) {
+        local = box_corner(gl_VertexIndex);
+        if (at.kind == SHAPE_DISK) local.z *= ABOUT - 1.0;
+        if (at.kind == SHAPE_CYLINDER || at.kind == SHAPE_PARABOLOID) local.z = 0.5 + 0.5 * local.z;
     }
-#ifndef NO_MESHES
+#ifdef HAS_MESHES
     if (at.kind == SHAPE_MESH) {
         shape.y = uint(gl_VertexIndex) / 3u;
         Triangle triangle = scene_triangles.data[shape.y];

@@ -6,14 +6,15 @@
 #ifndef BVH_GLSL
 #define BVH_GLSL
 
+#include "shared/canonical.glsl"
 #include "shared/intersect.glsl"
 #include "shared/scene.glsl"
 
 struct Hit {
     float t;        // metres
     uint instance;  // in scene_instances
-    uint primitive; // in scene_triangles; 0 for analytic shapes
-    vec2 uv;        // triangle: barycentric weights of b, c; quad: in [-1, 1]^2
+    uint primitive; // in scene_triangles; box: its face; cylinder: its quarter; else 0
+    vec2 uv;        // triangle: barycentric weights of b, c; else as `hit_shape` names the place; sphere: nothing
 };
 
 #ifdef COUNT_NODES
@@ -41,22 +42,43 @@ vec3 map_normal(vec4 to_object[3], vec3 n) {
     return n.x * to_object[0].xyz + n.y * to_object[1].xyz + n.z * to_object[2].xyz;
 }
 
-// A sphere or quad against the nearest hit so far.
-bool test_shape(Instance shape, uint index, LocalRay ray, inout Hit hit) {
-    vec2 uv = vec2(0.0);
-#if defined(NO_QUADS)
-    float t = hit_sphere(ray, hit.t);
-#elif defined(NO_SPHERES)
-    float t = hit_quad(ray, hit.t, uv);
-#else
-    float t = shape.kind == SHAPE_SPHERE ? hit_sphere(ray, hit.t) : hit_quad(ray, hit.t, uv);
+// The nearest crossing with an analytic shape at 0 < t < t_max, or NO_HIT, and what names the place.
+float hit_shape(Instance shape, LocalRay ray, float t_max, out uint primitive, out vec2 uv) {
+    primitive = 0u;
+    uv = vec2(0.0);
+    float t = NO_HIT;
+#ifdef HAS_SPHERES
+    if (shape.kind == SHAPE_SPHERE) t = hit_sphere(ray, t_max);
 #endif
+#ifdef HAS_QUADS
+    if (shape.kind == SHAPE_QUAD) t = hit_quad(ray, t_max, uv);
+#endif
+#ifdef HAS_BOXES
+    if (shape.kind == SHAPE_BOX) t = hit_box(ray, t_max, primitive, uv);
+#endif
+#ifdef HAS_DISKS
+    if (shape.kind == SHAPE_DISK) t = hit_disk(ray, t_max, uv);
+#endif
+#ifdef HAS_CYLINDERS
+    if (shape.kind == SHAPE_CYLINDER) t = hit_cylinder(ray, uintBitsToFloat(shape.detail), t_max, primitive, uv);
+#endif
+#ifdef HAS_PARABOLOIDS
+    if (shape.kind == SHAPE_PARABOLOID) t = hit_paraboloid(ray, uintBitsToFloat(shape.detail), t_max, uv);
+#endif
+    return t;
+}
+
+// An analytic shape against the nearest hit so far.
+bool test_shape(Instance shape, uint index, LocalRay ray, inout Hit hit) {
+    uint primitive;
+    vec2 uv;
+    float t = hit_shape(shape, ray, hit.t, primitive, uv);
     if (!(t < hit.t)) return false;
-    hit = Hit(t, index, 0u, uv);
+    hit = Hit(t, index, primitive, uv);
     return true;
 }
 
-#ifndef NO_MESHES
+#ifdef HAS_MESHES
 bool test_triangles(uint first, uint count, uint instance, LocalRay ray, inout Hit hit) {
     bool found = false;
     for (uint k = first; k < first + count; k++) {
@@ -130,7 +152,7 @@ bool next_leaf(LocalRay ray, float t_max, int base, inout int height, inout uint
     return have;
 }
 
-#ifndef NO_MESHES
+#ifdef HAS_MESHES
 // A mesh against the nearest hit so far, with the part of the stack above `height`.
 bool traverse_mesh(LocalRay ray, uint instance, uint root, bool any_hit, int height, inout Hit hit) {
     Node top = scene_nodes.data[root];
@@ -151,8 +173,8 @@ bool test_instance(uint index, vec3 o, vec3 d, uint mask, bool any_hit, int heig
     Instance shape = scene_instances.data[index];
     if ((material_mask(shape.material) & mask) == 0u) return false;
     LocalRay ray = local_ray(map_point(shape.to_object, o), map_vector(shape.to_object, d));
-#ifndef NO_MESHES
-    if (shape.kind == SHAPE_MESH) return traverse_mesh(ray, index, shape.root, any_hit, height, hit);
+#ifdef HAS_MESHES
+    if (shape.kind == SHAPE_MESH) return traverse_mesh(ray, index, shape.detail, any_hit, height, hit);
 #endif
     return test_shape(shape, index, ray, hit);
 }

@@ -3,7 +3,12 @@
 #define SCENE_GLSL
 
 // DISPERSIVE is defined where materials bend the bands apart: they are then traced apart.
-// The host defines NO_SPHERES, NO_QUADS, NO_MESHES or NO_SPOTS where a scene has none: their code is then not compiled.
+// The host defines HAS_SPHERES, HAS_QUADS, HAS_MESHES, HAS_BOXES, HAS_DISKS, HAS_CYLINDERS and HAS_PARABOLOIDS where a
+// scene has any, and NO_SPOTS where it has no spot: what it lacks is not compiled.
+#if defined(HAS_SPHERES) || defined(HAS_BOXES) || defined(HAS_DISKS) || defined(HAS_CYLINDERS) || \
+    defined(HAS_PARABOLOIDS)
+#define HAS_CAST // shapes that the eye casts rays at; quads and meshes are rasterised as they are
+#endif
 
 // A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
 // primitives from `first`. All indices are absolute. The tree over the instances has its root at 0.
@@ -29,12 +34,16 @@ struct Instance {
     uint kind;
     uint material;
     uint object; // index of the object in the scene
-    uint root;   // of a mesh, in scene_nodes
+    uint detail; // mesh: its root in scene_nodes; cylinder, paraboloid: the bits of its cut
 };
 
 const uint SHAPE_SPHERE = 0u; // unit sphere at the origin
 const uint SHAPE_QUAD = 1u;   // [-1, 1]^2 in the xy-plane, normal +z
 const uint SHAPE_MESH = 2u;
+const uint SHAPE_BOX = 3u;        // [-1, 1]^3
+const uint SHAPE_DISK = 4u;       // unit disk in the xy-plane, normal +z
+const uint SHAPE_CYLINDER = 5u;   // x^2 + y^2 = 1, 0 <= z <= 1, x >= cut
+const uint SHAPE_PARABOLOID = 6u; // z = x^2 + y^2 <= 1, x >= cut
 
 struct Material {
     uint kind;
@@ -62,7 +71,7 @@ const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 
 layout(set = 0, binding = 0, scalar) readonly buffer SceneNodes { Node data[]; } scene_nodes;
-#ifndef NO_MESHES
+#ifdef HAS_MESHES
 layout(set = 0, binding = 1, scalar) readonly buffer SceneTriangles { Triangle data[]; } scene_triangles;
 layout(set = 0, binding = 2, scalar) readonly buffer SceneNormals { TriangleNormals data[]; } scene_normals;
 #endif

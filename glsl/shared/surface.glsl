@@ -9,7 +9,8 @@ struct Surface {
     vec3 p;   // on the primitive, not on the ray: its error does not grow with the ray's length
     vec3 ng;  // unit geometric normal of the outside, whichever side the ray came from
     vec3 ns;  // unit interpolated normal, on ng's side
-    // Quad: in [-1, 1]^2; sphere: longitude about +y from +z, latitude (radians); mesh: barycentric weights of b, c.
+    // Quad, box, disk: in [-1, 1]^2; sphere: longitude about +y from +z, latitude (radians); cylinder: angle about its
+    // axis (radians), share of its height; paraboloid: across its axis, in rims; mesh: barycentric weights of b, c.
     vec2 uv;
     uint object;
     uint material;
@@ -37,7 +38,7 @@ float surface_rounding(Instance shape, vec3 p, vec3 ng, vec3 local, float inters
     return SURFACE_ROUNDING * (of_point + of_origin);
 }
 
-#ifndef NO_SPHERES
+#ifdef HAS_SPHERES
 Surface surface_of_sphere(Instance shape, vec3 local) {
     Surface s;
     vec3 n = safe_normalize(local, vec3(0.0, 1.0, 0.0));
@@ -51,7 +52,7 @@ Surface surface_of_sphere(Instance shape, vec3 local) {
 }
 #endif
 
-#ifndef NO_QUADS
+#ifdef HAS_QUADS
 Surface surface_of_quad(Instance shape, vec2 uv) {
     Surface s;
     vec3 local = vec3(clamp(uv, -1.0, 1.0), 0.0);
@@ -64,7 +65,30 @@ Surface surface_of_quad(Instance shape, vec2 uv) {
 }
 #endif
 
-#ifndef NO_MESHES
+// On a canonical shape, with the normal of its outside, of any length; `intersection`: the size of what its equation adds.
+Surface surface_of_canonical(Instance shape, vec3 local, vec3 normal, vec2 uv, float intersection) {
+    Surface s;
+    s.p = map_point(shape.to_world, local);
+    s.ng = safe_normalize(map_normal(shape.to_object, normal), vec3(0.0, 1.0, 0.0));
+    s.ns = s.ng;
+    s.uv = uv;
+    s.eps = surface_rounding(shape, s.p, s.ng, local, intersection);
+    return s;
+}
+
+#ifdef HAS_BOXES
+// Off the box's edges by the rounding of the way back, so that a ray that goes on inside starts inside.
+Surface surface_of_box(Instance shape, uint face, vec2 uv) {
+    vec3 p = map_point(shape.to_world, box_place(face, uv));
+    vec3 back = SURFACE_ROUNDING * (abs_map(shape.to_object, abs(p)) + 1.0);
+    uint axis = face >> 1;
+    vec2 room = max(1.0 - (axis == 0u ? back.yz : axis == 1u ? back.zx : back.xy), 0.0);
+    vec2 inner = clamp(uv, -room, room);
+    return surface_of_canonical(shape, box_place(face, inner), box_normal(face), inner, 0.0);
+}
+#endif
+
+#ifdef HAS_MESHES
 Surface surface_of_triangle(Instance shape, uint primitive, vec2 uv) {
     Surface s;
     Triangle at = scene_triangles.data[primitive];
@@ -87,16 +111,37 @@ Surface surface_of_triangle(Instance shape, uint primitive, vec2 uv) {
 // Of a hit that `trace` found for this ray.
 Surface surface_at(vec3 o, vec3 d, Hit hit) {
     Instance shape = scene_instances.data[hit.instance];
-    Surface s;
-#ifndef NO_SPHERES
+    Surface s = Surface(o, -d, -d, vec2(0.0), 0u, 0u, 0.0);
+#ifdef HAS_SPHERES
     if (shape.kind == SHAPE_SPHERE) {
         s = surface_of_sphere(shape, map_point(shape.to_object, o) + hit.t * map_vector(shape.to_object, d));
     }
 #endif
-#ifndef NO_QUADS
+#ifdef HAS_QUADS
     if (shape.kind == SHAPE_QUAD) s = surface_of_quad(shape, hit.uv);
 #endif
-#ifndef NO_MESHES
+#ifdef HAS_BOXES
+    if (shape.kind == SHAPE_BOX) s = surface_of_box(shape, hit.primitive, hit.uv);
+#endif
+#ifdef HAS_DISKS
+    if (shape.kind == SHAPE_DISK) {
+        s = surface_of_canonical(shape, vec3(hit.uv, 0.0), vec3(0.0, 0.0, 1.0), hit.uv, 0.0);
+    }
+#endif
+#ifdef HAS_CYLINDERS
+    if (shape.kind == SHAPE_CYLINDER) {
+        vec3 out_of = cylinder_normal(hit.primitive, hit.uv.x);
+        vec2 uv = vec2(atan(out_of.y, out_of.x), hit.uv.y);
+        s = surface_of_canonical(shape, vec3(out_of.xy, hit.uv.y), out_of, uv, 1.0);
+    }
+#endif
+#ifdef HAS_PARABOLOIDS
+    if (shape.kind == SHAPE_PARABOLOID) {
+        vec3 local = vec3(hit.uv, dot(hit.uv, hit.uv));
+        s = surface_of_canonical(shape, local, vec3(2.0 * hit.uv, -1.0), hit.uv, 1.0);
+    }
+#endif
+#ifdef HAS_MESHES
     if (shape.kind == SHAPE_MESH) s = surface_of_triangle(shape, hit.primitive, hit.uv);
 #endif
     s.object = shape.object;

@@ -119,6 +119,7 @@ impl ObjectRow {
         let (shape, mesh) = match &object.shape {
             Shape::Sphere { .. } => ("sphere", None),
             Shape::Quad { .. } => ("quad", None),
+            Shape::Canonical { kind, .. } => (kind.name(), None),
             Shape::Mesh { mesh, .. } => ("mesh", Some(mesh)),
         };
         Self {

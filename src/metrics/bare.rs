@@ -103,6 +103,11 @@ impl<'a> Caster<'a> {
             && match self.shape {
                 Shape::Sphere { center, radius } => sphere(origin - center, direction, *radius).into_iter().any(hit),
                 Shape::Quad { center, u, v } => quad(origin - center, direction, *u, *v).is_some_and(hit),
+                Shape::Canonical { kind, to_world } => {
+                    let to_object = to_world.inverse();
+                    let (o, d) = (to_object.transform_point3(origin), to_object.transform_vector3(direction));
+                    kind.meet(o, d, 0.0, false).is_some_and(hit)
+                }
                 Shape::Mesh { mesh, to_world } => mesh.triangles.iter().any(|corners| {
                     let [a, b, c] = corners.map(|at| to_world.transform_point3(mesh.positions[at as usize].as_dvec3()));
                     triangle(origin - a, direction, b - a, c - a).is_some_and(hit)

@@ -7,11 +7,14 @@ use crate::{
     view::Extent,
 };
 
-/// Points and spheres of one object: spheres exact, meshes by their vertices.
+/// Points and spheres of one object: spheres exact, meshes by their vertices, the rest by what holds them.
 fn of_object(object: &Object) -> Extent {
     match &object.shape {
         Shape::Sphere { center, radius } => Extent { points: vec![], spheres: vec![(*center, *radius)] },
         Shape::Quad { center, u, v } => corners(*center, *u, *v),
+        Shape::Canonical { kind, to_world } => {
+            Extent { points: kind.hull().into_iter().map(|p| to_world.transform_point3(p)).collect(), spheres: vec![] }
+        }
         Shape::Mesh { mesh, to_world } => {
             let used = mesh.triangles.iter().flatten().filter_map(|&i| mesh.positions.get(i as usize));
             Extent { points: used.map(|p| to_world.transform_point3(p.as_dvec3())).collect(), spheres: vec![] }

@@ -209,8 +209,8 @@ fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>) -> ImageId {
     let depth = plan.image("eye/depth", extent, Format::Depth32f, Lifetime::Frame);
     let draws = visible_draws(from.scene, from.camera, from.arrays);
     let mut pass = from.buffers.vertices(plan.pass("eye/gbuffer")).read("frame", from.frame);
-    if from.buffers.has_spheres {
-        pass = pass.push(&extent.map(|s| s as i32)); // spheres are intersected by rays through the pixels
+    if from.buffers.is_cast() {
+        pass = pass.push(&extent.map(|s| s as i32)); // rays go through the pixels
     }
     pass.target(seen, 0, Some([0.0; 4]), Blend::Replace).depth(depth, true).draw(
         &["eye/gbuffer.vert", "eye/gbuffer.frag"],

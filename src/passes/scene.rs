@@ -1,12 +1,25 @@
 //! The scene's six buffers in a plan (`glsl/shared/scene.glsl`).
 
-use super::accel::{Instance, SHAPE_MESH, SHAPE_QUAD, SHAPE_SPHERE, SceneArrays};
+use super::accel::{
+    Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SPHERE,
+    SceneArrays,
+};
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
     scene::{Camera, LightKind, Scene},
 };
 
-/// Vertices of the box about a sphere (`glsl/eye/gbuffer.vert`).
+/// Kinds of shapes, and what is defined for shaders of a scene that has them.
+const KINDS: [(u32, &str); 7] = [
+    (SHAPE_SPHERE, "HAS_SPHERES"),
+    (SHAPE_QUAD, "HAS_QUADS"),
+    (SHAPE_MESH, "HAS_MESHES"),
+    (SHAPE_BOX, "HAS_BOXES"),
+    (SHAPE_DISK, "HAS_DISKS"),
+    (SHAPE_CYLINDER, "HAS_CYLINDERS"),
+    (SHAPE_PARABOLOID, "HAS_PARABOLOIDS"),
+];
+/// Vertices of the box about a shape that the eye intersects itself (`glsl/eye/gbuffer.vert`).
 const BOX_VERTICES: u32 = 36;
 /// Vertices of a quad.
 const QUAD_VERTICES: u32 = 6;
@@ -20,9 +33,8 @@ pub struct SceneBuffers {
     instances: BufferId,
     materials: BufferId,
     lights: Option<BufferId>,
-    /// Whether there is any sphere, any quad.
-    pub(super) has_spheres: bool,
-    has_quads: bool,
+    /// Kinds of shapes that there are.
+    kinds: Vec<(u32, &'static str)>,
     has_spots: bool,
     is_dispersive: bool,
 }
@@ -40,8 +52,7 @@ impl SceneBuffers {
             instances: plan.upload("scene/instances", &arrays.instances),
             materials: plan.upload("scene/materials", &arrays.materials),
             lights: (!scene.lights.is_empty()).then(|| plan.upload("scene/lights", &arrays.lights)),
-            has_spheres: any(SHAPE_SPHERE),
-            has_quads: any(SHAPE_QUAD),
+            kinds: KINDS.into_iter().filter(|(kind, _)| any(*kind)).collect(),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
             is_dispersive: scene.is_dispersive(),
         }
@@ -80,18 +91,14 @@ impl SceneBuffers {
         }
     }
 
-    /// Kinds of shapes that the scene lacks are not compiled. (A scene without any keeps quads: shaders need one.)
-    fn shapes<'p>(&self, mut pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        if !self.has_spheres {
-            pass = pass.define("NO_SPHERES", 1);
-        }
-        if !self.has_quads && self.has_spheres {
-            pass = pass.define("NO_QUADS", 1);
-        }
-        if self.meshes.is_none() {
-            pass = pass.define("NO_MESHES", 1);
-        }
-        pass
+    /// Kinds of shapes that the scene lacks are not compiled.
+    fn shapes<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        self.kinds.iter().fold(pass, |pass, (_, define)| pass.define(define, 1))
+    }
+
+    /// Whether the eye casts rays at any shape: at all but quads and meshes, which are rasterised as they are.
+    pub(super) fn is_cast(&self) -> bool {
+        self.kinds.iter().any(|(kind, _)| ![SHAPE_QUAD, SHAPE_MESH].contains(kind))
     }
 }
 
@@ -105,10 +112,9 @@ pub fn visible_draws(scene: &Scene, camera: &Camera, arrays: &SceneArrays) -> Ve
     let draw = |(index, instance): (usize, &Instance)| {
         seen(instance)?;
         let (first_vertex, vertices) = match instance.kind {
-            SHAPE_SPHERE => (0, BOX_VERTICES),
             SHAPE_QUAD => (0, QUAD_VERTICES),
-            SHAPE_MESH => triangle_range(arrays, instance.root),
-            _ => return None,
+            SHAPE_MESH => triangle_range(arrays, instance.detail),
+            _ => (0, BOX_VERTICES),
         };
         Some(Draw { vertices, first_vertex, instances: 1, first_instance: index as u32 })
     };

@@ -89,6 +89,10 @@ pub struct ObjectFile {
     pub visible_to_camera: bool,
     pub sphere: Option<SphereFile>,
     pub quad: Option<QuadFile>,
+    pub r#box: Option<BoxFile>,
+    pub disk: Option<DiskFile>,
+    pub cylinder: Option<CylinderFile>,
+    pub paraboloid: Option<ParaboloidFile>,
     pub mesh: Option<MeshFile>,
 }
 
@@ -105,6 +109,48 @@ pub struct QuadFile {
     pub center: Floats<3>,
     pub u: Floats<3>,
     pub v: Floats<3>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxFile {
+    pub center: Floats<3>,
+    pub half: Floats<3>,
+    #[serde(default)]
+    pub rotate: Floats<3>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DiskFile {
+    pub center: Floats<3>,
+    pub normal: Floats<3>,
+    pub radius: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderFile {
+    pub base: Floats<3>,
+    pub axis: Floats<3>,
+    pub radius: f64,
+    pub height: f64,
+    #[serde(default = "full_turn")]
+    pub arc: f64,
+    /// Needed where the arc is less than a full turn.
+    pub middle: Option<Floats<3>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParaboloidFile {
+    pub vertex: Floats<3>,
+    pub axis: Floats<3>,
+    pub focal_length: f64,
+    pub rim: f64,
+    /// With `middle`, an off-axis part.
+    pub from: Option<f64>,
+    pub middle: Option<Floats<3>>,
 }
 
 #[derive(Deserialize)]
@@ -188,6 +234,10 @@ pub struct SpotFile {
 
 fn one() -> f64 {
     1.0
+}
+
+fn full_turn() -> f64 {
+    360.0
 }
 
 fn yes() -> bool {

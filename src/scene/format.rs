@@ -1,14 +1,18 @@
 //! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
 
 /// Tables that say of what kind their parent is; a dotted key may leave them out.
-pub const KINDS: [&str; 12] = [
+pub const KINDS: [&str; 16] = [
+    "box",
     "conductor",
+    "cylinder",
     "dielectric",
     "diffuse",
     "directional",
+    "disk",
     "mesh",
     "mirror",
     "orthographic",
+    "paraboloid",
     "pinhole",
     "point",
     "quad",
@@ -35,13 +39,19 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["region"] => &["receiver", "center", "half"],
         ["extent"] => &["center", "half"],
         ["cameras", _] => &["pinhole", "orthographic"],
-        ["objects", _] => &["material", "visible_to_camera", "sphere", "quad", "mesh"],
+        ["objects", _] => {
+            &["material", "visible_to_camera", "sphere", "quad", "box", "disk", "cylinder", "paraboloid", "mesh"]
+        }
         ["materials", _] => &["diffuse", "dielectric", "mirror", "conductor"],
         ["lights", _] => &["directional", "point", "spot"],
         ["cameras", _, "pinhole"] => &["position", "target", "up", "hides_specular", "fov_y"],
         ["cameras", _, "orthographic"] => &["position", "target", "up", "hides_specular", "height", "width"],
         ["objects", _, "sphere"] => &["center", "radius"],
         ["objects", _, "quad"] => &["center", "u", "v"],
+        ["objects", _, "box"] => &["center", "half", "rotate"],
+        ["objects", _, "disk"] => &["center", "normal", "radius"],
+        ["objects", _, "cylinder"] => &["base", "axis", "radius", "height", "arc", "middle"],
+        ["objects", _, "paraboloid"] => &["vertex", "axis", "focal_length", "rim", "from", "middle"],
         ["objects", _, "mesh"] => &["file", "fit", "center", "rotate"],
         ["materials", _, "diffuse"] => &["albedo"],
         ["materials", _, "dielectric"] => &["ior", "absorption"],
@@ -78,6 +88,10 @@ mod tests {
         assert_eq!(keys(&["objects", ""]), known::<file::ObjectFile>());
         assert_eq!(keys(&["objects", "", "sphere"]), known::<file::SphereFile>());
         assert_eq!(keys(&["objects", "", "quad"]), known::<file::QuadFile>());
+        assert_eq!(keys(&["objects", "", "box"]), known::<file::BoxFile>());
+        assert_eq!(keys(&["objects", "", "disk"]), known::<file::DiskFile>());
+        assert_eq!(keys(&["objects", "", "cylinder"]), known::<file::CylinderFile>());
+        assert_eq!(keys(&["objects", "", "paraboloid"]), known::<file::ParaboloidFile>());
         assert_eq!(keys(&["objects", "", "mesh"]), known::<file::MeshFile>());
         assert_eq!(keys(&["materials", ""]), known::<file::MaterialFile>());
         assert_eq!(keys(&["materials", "", "diffuse"]), known::<file::DiffuseFile>());

@@ -1,7 +1,7 @@
 //! Which medium holds a point.
 use glam::DVec3;
 
-use super::{Camera, MaterialKind, Mesh, Object, Scene, Shape};
+use super::{Camera, Canonical, MaterialKind, Mesh, Object, Scene, Shape};
 
 /// Winding number from which a point is inside: half-way between the outside's 0 and the inside's 1.
 const INSIDE: f64 = 0.5;
@@ -18,14 +18,14 @@ enum Hold {
 impl Scene {
     /// The medium at a point (m): an index into [`Scene::materials`]; `None` in air.
     ///
-    /// A dielectric sphere holds what is nearer to its centre than its radius. A dielectric mesh holds what its
+    /// A dielectric sphere holds what is nearer to its centre than its radius, a box what is within its sides. A mesh holds what its
     /// triangles wind round by more than a half (Van Oosterom and Strackee 1983, "The solid angle of a plane triangle",
-    /// eq. 8). A dielectric quad is an open interface: it holds what lies behind it, on the side that its normal points
+    /// eq. 8). A quad or a disk is an open interface: it holds what lies behind it, on the side that its normal points
     /// away from, and within its outline as seen along the normal, however deep.
     ///
     /// Of several the innermost counts: closed shapes before open interfaces; of closed shapes the one with the
     /// smallest box, which is the inner one wherever two are nested; of interfaces the nearest; then the first by name.
-    /// A point on a sphere or a quad is outside; on a mesh's surface rounding decides. A point that is not finite is in
+    /// A point on a sphere or an open interface is outside; on a mesh's surface rounding decides. A point that is not finite is in
     /// air.
     pub fn medium_at(&self, p: DVec3) -> Option<usize> {
         self.media_at(p).pop()
@@ -60,6 +60,15 @@ fn hold(shape: &Shape, p: DVec3) -> Option<Hold> {
     let closed = Hold::Closed(0.5 * (high - low).length());
     match shape {
         Shape::Sphere { center, radius } => ((p - *center).length() < *radius).then_some(closed),
+        Shape::Canonical { kind, to_world } => match kind {
+            Canonical::Box => (to_world.inverse().transform_point3(p).abs().max_element() < 1.0).then_some(closed),
+            Canonical::Disk => {
+                let at = to_world.inverse().transform_point3(p);
+                (at.z < 0.0 && at.truncate().length() <= 1.0).then_some(Hold::Open(-at.z * to_world.z_axis.length()))
+            }
+            // Refused as dielectrics: open shells bound nothing.
+            Canonical::Cylinder { .. } | Canonical::Paraboloid { .. } => None,
+        },
         Shape::Quad { center, u, v } => {
             let way = p - *center;
             let depth = -way.dot(u.cross(*v).normalize_or_zero());
@@ -179,6 +188,28 @@ mod tests {
         for p in on {
             let w = winding(&mesh, p);
             assert!((-ROUNDING..=1.0 + ROUNDING).contains(&w), "{p}: {w}");
+        }
+    }
+
+    fn canonical(kind: Canonical, stretch: DVec3, at: DVec3) -> Shape {
+        let turn = DQuat::from_rotation_y(0.5);
+        Shape::Canonical { kind, to_world: DAffine3::from_scale_rotation_translation(stretch, turn, at) }
+    }
+
+    #[test]
+    fn a_box_holds_what_is_within_its_sides_and_a_disk_what_is_below_it() {
+        let (stretch, at) = (DVec3::new(2.0, 1.0, 0.5), DVec3::new(0.3, 1.0, 0.0));
+        let boxed = of(vec![canonical(Canonical::Box, stretch, at)]);
+        let pane = of(vec![canonical(Canonical::Disk, DVec3::splat(2.0), at)]);
+        let turned = |p: DVec3| at + DQuat::from_rotation_y(0.5) * p;
+        for (scale, inside) in [(0.0, true), (1.0 - BESIDE, true), (1.0 + BESIDE, false)] {
+            for corner in [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::ONE] {
+                assert_eq!(boxed.medium_at(turned(corner * stretch * scale)).is_some(), inside, "{corner} {scale}");
+            }
+        }
+        assert_eq!(pane.medium_at(turned(DVec3::new(1.9, 0.0, -5.0))), Some(0));
+        for outside in [DVec3::new(2.1, 0.0, -5.0), DVec3::new(1.5, 1.5, -5.0), DVec3::Z * BESIDE, DVec3::ZERO] {
+            assert_eq!(pane.medium_at(turned(outside)), None, "{outside}");
         }
     }
 

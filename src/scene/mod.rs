@@ -3,14 +3,15 @@
 //! A scene is a TOML file (see `scenes/` for commented ones) or one of the [shipped](Scene::shipped) scenes. Units are
 //! metres, W/m² for directional lights and W/sr for point lights; the file's `unit` scales every length in it.
 //!
-//! A closed dielectric shape holds its medium inside. A dielectric quad is an open interface: its medium lies on the
-//! side its normal points away from (flat water under the air). A material *is* the identity of its medium: where two
+//! A closed dielectric shape holds its medium inside. A dielectric quad or disk is an open interface: its medium lies on
+//! the side its normal points away from (flat water under the air). Other open shapes bound no medium. A material *is* the identity of its medium: where two
 //! shapes of one material touch there is no interface, and nested dielectrics can be told apart.
 use std::{collections::BTreeMap, sync::Arc};
 
 use glam::{DAffine3, DVec3, Vec3};
 
 mod build;
+mod canonical;
 mod class;
 mod error;
 mod file;
@@ -27,10 +28,12 @@ mod obj;
 mod object;
 mod overrides;
 mod patch;
+mod shape_files;
 mod shipped;
 
 use crate::names::NoSuch;
 
+pub use canonical::{Canonical, WHOLE};
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
 pub use light::{Beam, Light, LightKind};
@@ -135,6 +138,13 @@ pub enum Shape {
         /// Half edge, m, at right angles to `u`.
         v: DVec3,
     },
+    /// Exact; never tessellated for tracing.
+    Canonical {
+        /// Which one.
+        kind: Canonical,
+        /// From its own space: lengthens it along its axes, turns and moves it.
+        to_world: DAffine3,
+    },
     /// Triangles.
     Mesh {
         /// Shared by the objects that name the same file.
@@ -145,13 +155,18 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Smallest and largest corner of the box about the shape, in world axes; `None` for a mesh without triangles.
+    /// Corners of a box about the shape, in world axes: the smallest, but for round shapes other than spheres, where it
+    /// is up to 0.2 % wider; `None` for a mesh without triangles.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         match self {
             Shape::Sphere { center, radius } => Some([center - *radius, center + *radius]),
             Shape::Quad { center, u, v } => {
                 let half = u.abs() + v.abs();
                 Some([center - half, center + half])
+            }
+            Shape::Canonical { kind, to_world } => {
+                let points = kind.hull().into_iter().map(|p| to_world.transform_point3(p));
+                points.map(|p| [p; 2]).reduce(|[low, high], [p, _]| [low.min(p), high.max(p)])
             }
             Shape::Mesh { mesh, to_world } => mesh.bounds(|p| to_world.transform_point3(p)),
         }

@@ -1,15 +1,15 @@
 //! Objects: shapes checked, meshes read and put in place.
 use std::{collections::BTreeMap, sync::Arc};
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+use glam::{DAffine3, DVec3};
 
 use super::{
     Material, Mesh, Models, Object, Shape,
     error::SceneError,
-    file::{MeshFile, ObjectFile, QuadFile},
+    file::{MeshFile, ObjectFile, QuadFile, SphereFile},
     load::Files,
     locate::Key,
-    models, obj,
+    models, obj, shape_files,
 };
 
 /// Cosine between a quad's edges that passes for a right angle: the rounding of decimal numbers in a file.
@@ -27,17 +27,32 @@ pub fn object(
 ) -> Result<Object, SceneError> {
     let names = materials.iter().map(|material| material.name.as_str());
     let material = key.key("material").resolve("a material", &file.material, names)?;
-    let shape = match (&file.sphere, &file.quad, &file.mesh) {
-        (Some(sphere), None, None) => {
-            let key = key.key("sphere");
-            let center = key.key("center").point(sphere.center, unit)?;
-            Shape::Sphere { center, radius: key.key("radius").size(sphere.radius, unit)? }
-        }
-        (None, Some(written), None) => quad(&key.key("quad"), written, unit)?,
-        (None, None, Some(written)) => mesh(&key.key("mesh"), written, unit, meshes)?,
-        _ => return Err(key.one_kind(&["sphere", "quad", "mesh"])),
-    };
+    let shape = shape(key, file, unit, meshes)?;
+    shape_files::refuse_open_shell(key, &shape, &materials[material])?;
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
+}
+
+/// Of the one kind that is given.
+fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
+    let kinds = [
+        file.sphere.as_ref().map(|written| sphere(&key.key("sphere"), written, unit)),
+        file.quad.as_ref().map(|written| quad(&key.key("quad"), written, unit)),
+        file.r#box.as_ref().map(|written| shape_files::cuboid(&key.key("box"), written, unit)),
+        file.disk.as_ref().map(|written| shape_files::disk(&key.key("disk"), written, unit)),
+        file.cylinder.as_ref().map(|written| shape_files::cylinder(&key.key("cylinder"), written, unit)),
+        file.paraboloid.as_ref().map(|written| shape_files::paraboloid(&key.key("paraboloid"), written, unit)),
+        file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, meshes)),
+    ];
+    let mut given = kinds.into_iter().flatten();
+    match (given.next(), given.next()) {
+        (Some(shape), None) => shape,
+        _ => Err(key.one_kind(&["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "mesh"])),
+    }
+}
+
+fn sphere(key: &Key, file: &SphereFile, unit: f64) -> Result<Shape, SceneError> {
+    let center = key.key("center").point(file.center, unit)?;
+    Ok(Shape::Sphere { center, radius: key.key("radius").size(file.radius, unit)? })
 }
 
 fn quad(key: &Key, file: &QuadFile, unit: f64) -> Result<Shape, SceneError> {
@@ -57,14 +72,10 @@ fn mesh(key: &Key, file: &MeshFile, unit: f64, meshes: &mut Meshes) -> Result<Sh
     let mesh = meshes.read(&key.key("file"), &file.file)?;
     let fit = key.key("fit").size(file.fit, unit)?;
     let center = key.key("center").point(file.center, unit)?;
-    for angle in file.rotate.0 {
-        key.key("rotate").number(angle, -360.0..=360.0, "degrees", "a full turn is 360")?;
-    }
     let side = mesh.bounds(|p| p).map_or(0.0, |[low, high]| (high - low).max_element());
     // A mesh of one point, or of none, has no size to fit.
     let scale = if side == 0.0 { unit } else { fit / usable_side(key, side)? };
-    let [x, y, z] = file.rotate.0.map(f64::to_radians);
-    let linear = DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x)) * scale;
+    let linear = shape_files::turned(&key.key("rotate"), file.rotate)? * scale;
     let base = mesh.bounds(|p| linear * p).map_or(DVec3::ZERO, |[low, high]| (0.5 * (low + high)).with_y(low.y));
     Ok(Shape::Mesh { mesh, to_world: DAffine3::from_mat3_translation(linear, center - base) })
 }

@@ -1,6 +1,12 @@
 //! The scene's arrays traversed on the CPU by obvhs, its boxes in float32 as they are, the shapes in float64.
 use glam::{DMat3, DVec3, Vec3A};
-use nephroid::passes::accel::{Instance, Node, SHAPE_MESH, SHAPE_QUAD, SHAPE_SPHERE, SceneArrays};
+use nephroid::{
+    passes::accel::{
+        Instance, Node, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SPHERE,
+        SceneArrays,
+    },
+    scene::Canonical,
+};
 use obvhs::{
     bvh2::{Bvh2, node::Bvh2Node},
     faststack::HeapStack,
@@ -96,15 +102,35 @@ pub fn sphere(ray: &LocalRay) -> f64 {
     positive(-b / a - root).min(positive(-b / a + root))
 }
 
+/// The canonical shape of an instance, with the cut that the shaders read.
+pub fn canonical_of(instance: &Instance) -> Canonical {
+    let cut = f64::from(f32::from_bits(instance.detail));
+    match instance.kind {
+        SHAPE_BOX => Canonical::Box,
+        SHAPE_DISK => Canonical::Disk,
+        SHAPE_CYLINDER => Canonical::Cylinder { cut },
+        SHAPE_PARABOLOID => Canonical::Paraboloid { cut },
+        kind => panic!("kind {kind} is no canonical shape"),
+    }
+}
+
+fn canonical(instance: &Instance, ray: &LocalRay) -> f64 {
+    canonical_of(instance).meet(ray.o, ray.d, 0.0, false).unwrap_or(f64::INFINITY)
+}
+
 impl<'a> CpuScene<'a> {
     pub fn new(arrays: &'a SceneArrays) -> Self {
-        let roots = arrays.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.root);
+        let roots = arrays.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.detail);
         Self { arrays, top: bvh(&arrays.nodes, 0), meshes: roots.map(|r| (r, bvh(&arrays.nodes, r))).collect() }
     }
 
     pub fn corners(&self, primitive: u32) -> [DVec3; 3] {
         let t = &self.arrays.triangles[primitive as usize];
         [t.a, t.b, t.c].map(|v| DVec3::from(v.map(f64::from)))
+    }
+
+    pub fn is_mesh(&self, index: u32) -> bool {
+        self.instance(index).kind == SHAPE_MESH
     }
 
     pub fn instance(&self, index: u32) -> &Instance {
@@ -144,6 +170,7 @@ impl<'a> CpuScene<'a> {
         let t = match instance.kind {
             SHAPE_SPHERE => sphere(&ray),
             SHAPE_QUAD => quad(&ray),
+            kind if kind != SHAPE_MESH => canonical(instance, &ray),
             _ => return self.meet_mesh(index, &ray, best),
         };
         if t < best.t {
@@ -152,7 +179,7 @@ impl<'a> CpuScene<'a> {
     }
 
     fn meet_mesh(&self, index: u32, ray: &LocalRay, best: &mut CpuHit) {
-        let mesh = &self.meshes[&self.instance(index).root];
+        let mesh = &self.meshes[&self.instance(index).detail];
         let mut single = ray.single();
         single.tmax = best.t as f32;
         let start = *best;

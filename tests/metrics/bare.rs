@@ -60,3 +60,22 @@ fn a_dark_region_falls_back_on_the_lights_themselves() {
     let below = ("lights.sun.directional.direction", "[0.0, 1.0, 0.0]");
     near(e0("glass-sphere", &[below]), 1.0, ROUNDING);
 }
+
+/// Under the sun overhead a plaster box, a disk and a bowl shadow their outline of the region's 9 m²; an upright tube
+/// has none. Straight edges run between the points.
+#[test]
+fn canonical_shapes_cast_their_shadows() {
+    let from_above = ("lights.sun.direction", "[0.0, -1.0, 0.0]");
+    let pi = std::f64::consts::PI;
+    for (shape, shadow) in [
+        ("box = { center = [0, 0, 0], half = [0.75, 0.2, 0.375] }", 1.125),
+        ("disk = { center = [0, 0, 0], normal = [0, 1, 0], radius = 1.0 }", pi),
+        ("disk = { center = [0, 0, 0], normal = [0, 0.6, 0.8], radius = 1.0 }", 0.6 * pi),
+        ("paraboloid = { vertex = [0, 0, 0], axis = [0, 1, 0], focal_length = 0.3, rim = 0.8 }", 0.64 * pi),
+        ("cylinder = { base = [0, 0, -0.75], axis = [0, 0, 1], radius = 0.375, height = 1.5 }", 1.125),
+        ("cylinder = { base = [0, 0, 0], axis = [0, 1, 0], radius = 0.5, height = 1.0 }", 0.0),
+    ] {
+        let object = format!("{{ material = \"plaster\", {shape} }}");
+        near(e0("diffuse", &[("objects.ball", &object), from_above]), 1.0 - shadow / 9.0, EDGE);
+    }
+}

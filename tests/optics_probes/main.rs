@@ -6,10 +6,12 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod canonical;
 mod directions;
 mod fresnel;
 mod interface;
 mod intersection;
+mod leaving;
 mod refraction;
 mod splat;
 mod surface;

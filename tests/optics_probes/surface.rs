@@ -17,7 +17,10 @@ const TIES: usize = RAYS / 2000;
 
 /// The scene, its lengths times `scale`, moved by `shift` (in scaled units).
 fn moved(name: &str, scale: f64, shift: DVec3) -> Scene {
-    let mut scene = Scene::load(name, &[]).unwrap();
+    placed(Scene::load(name, &[]).unwrap(), scale, shift)
+}
+
+pub fn placed(mut scene: Scene, scale: f64, shift: DVec3) -> Scene {
     for object in &mut scene.objects {
         match &mut object.shape {
             Shape::Sphere { center, radius } => {
@@ -29,7 +32,7 @@ fn moved(name: &str, scale: f64, shift: DVec3) -> Scene {
                 *u *= scale;
                 *v *= scale;
             }
-            Shape::Mesh { to_world, .. } => {
+            Shape::Mesh { to_world, .. } | Shape::Canonical { to_world, .. } => {
                 let place =
                     DAffine3::from_scale_rotation_translation(DVec3::splat(scale), Default::default(), shift * scale);
                 *to_world = place * *to_world;

@@ -5,6 +5,7 @@ use nephroid::scene::{Scene, SceneError};
 use tempfile::TempDir;
 
 mod malformed;
+mod shapes;
 mod sound;
 
 /// A scene with every kind of thing but a mesh; the tests below change it line by line.

@@ -44,8 +44,8 @@ pub struct Instance {
     pub material: u32,
     /// Index in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
-    /// Of a mesh, in the nodes.
-    pub root: u32,
+    /// Of a mesh, its root in the nodes; of a cylinder or paraboloid, the bits of its cut in float32.
+    pub detail: u32,
 }
 
 /// Of one object or more; a medium's identity is its index.
@@ -100,6 +100,14 @@ pub const SHAPE_SPHERE: u32 = 0;
 pub const SHAPE_QUAD: u32 = 1;
 /// Triangles under a root.
 pub const SHAPE_MESH: u32 = 2;
+/// [-1, 1]³.
+pub const SHAPE_BOX: u32 = 3;
+/// Unit disk in the xy-plane, normal +z.
+pub const SHAPE_DISK: u32 = 4;
+/// x² + y² = 1, z from 0 to 1, x from the cut on.
+pub const SHAPE_CYLINDER: u32 = 5;
+/// z = x² + y², up to 1, x from the cut on.
+pub const SHAPE_PARABOLOID: u32 = 6;
 
 /// A receiver.
 pub const MATERIAL_DIFFUSE: u32 = 0;

@@ -2,13 +2,13 @@
 //! for each distinct mesh, one over the instances.
 //!
 //! Trees: binary, by obvhs 0.4 (parallel locally-ordered clustering, Meister and Bittner 2018, then reinsertion).
-//! Shapes stay what they are: a sphere is a unit sphere under its instance, never triangles.
+//! Analytic shapes stay what they are: a sphere is a unit sphere under its instance, never triangles.
 use std::{collections::HashMap, sync::Arc};
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use obvhs::aabb::Aabb;
 
-use crate::scene::{LightKind, Material as SceneMaterial, MaterialKind, Mesh, Object, Scene, Shape};
+use crate::scene::{Canonical, LightKind, Material as SceneMaterial, MaterialKind, Mesh, Object, Scene, Shape};
 
 mod error;
 mod layout;
@@ -67,7 +67,7 @@ impl SceneArrays {
         let base = top.nodes.len() as u32;
         let instance = |&i: &u32| {
             let p = &placed[i as usize];
-            Instance { root: p.mesh.map_or(0, |m| base + meshes.all[m].root), ..p.instance }
+            Instance { detail: p.mesh.map_or(p.instance.detail, |m| base + meshes.all[m].root), ..p.instance }
         };
         let arrays = SceneArrays {
             instances: filled(top.order.iter().filter(|&&i| (i as usize) < placed.len()).map(instance).collect()),
@@ -167,11 +167,12 @@ struct Placed {
 /// None for a mesh without triangles: there is nothing to hit.
 fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Placed>, AccelError> {
     let name = &object.name;
-    let (kind, to_world, mesh, (lo, hi)) = match &object.shape {
+    let (mut mesh, mut detail) = (None, 0);
+    let (kind, to_world, (lo, hi)) = match &object.shape {
         Shape::Sphere { center, radius } => {
             let reach = DVec3::splat(*radius);
             let map = DAffine3::from_mat3_translation(DMat3::from_diagonal(reach), *center);
-            (SHAPE_SPHERE, map, None, (*center - reach.abs(), *center + reach.abs()))
+            (SHAPE_SPHERE, map, (*center - reach.abs(), *center + reach.abs()))
         }
         Shape::Quad { center, u, v } => {
             let normal = u.cross(*v);
@@ -179,12 +180,18 @@ fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Pl
             let w = normal / normal.length().sqrt();
             let map = DAffine3::from_mat3_translation(DMat3::from_cols(*u, *v, w), *center);
             let reach = u.abs() + v.abs();
-            (SHAPE_QUAD, map, None, (*center - reach, *center + reach))
+            (SHAPE_QUAD, map, (*center - reach, *center + reach))
         }
         Shape::Mesh { mesh, .. } if mesh.triangles.is_empty() => return Ok(None),
-        Shape::Mesh { mesh, to_world } => {
-            let built = meshes.add(name, mesh)?;
-            (SHAPE_MESH, *to_world, Some(built), bounds(mesh, to_world))
+        Shape::Canonical { kind, to_world } => {
+            let (kind, cut) = canonical(kind);
+            detail = cut.to_bits();
+            let [lo, hi] = object.shape.bounds().unwrap_or_default();
+            (kind, *to_world, (lo, hi))
+        }
+        Shape::Mesh { mesh: triangles, to_world } => {
+            mesh = Some(meshes.add(name, triangles)?);
+            (SHAPE_MESH, *to_world, bounds(triangles, to_world))
         }
     };
     let to_object = to_world.inverse();
@@ -197,9 +204,19 @@ fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Pl
         kind,
         material: object.material as u32,
         object: index as u32,
-        root: 0,
+        detail,
     };
     Ok(Some(Placed { instance, mesh, bounds: roomy_box(lo, hi) }))
+}
+
+/// Its number, and the cut of what has one.
+fn canonical(kind: &Canonical) -> (u32, f32) {
+    match *kind {
+        Canonical::Box => (SHAPE_BOX, 0.0),
+        Canonical::Disk => (SHAPE_DISK, 0.0),
+        Canonical::Cylinder { cut } => (SHAPE_CYLINDER, cut as f32),
+        Canonical::Paraboloid { cut } => (SHAPE_PARABOLOID, cut as f32),
+    }
 }
 
 /// World box of the triangles.

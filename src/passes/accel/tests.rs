@@ -26,6 +26,10 @@ fn constants_agree_with_the_shaders() {
         ("SHAPE_SPHERE", SHAPE_SPHERE),
         ("SHAPE_QUAD", SHAPE_QUAD),
         ("SHAPE_MESH", SHAPE_MESH),
+        ("SHAPE_BOX", SHAPE_BOX),
+        ("SHAPE_DISK", SHAPE_DISK),
+        ("SHAPE_CYLINDER", SHAPE_CYLINDER),
+        ("SHAPE_PARABOLOID", SHAPE_PARABOLOID),
         ("MATERIAL_DIFFUSE", MATERIAL_DIFFUSE),
         ("MATERIAL_DIELECTRIC", MATERIAL_DIELECTRIC),
         ("MATERIAL_MIRROR", MATERIAL_MIRROR),
@@ -56,7 +60,7 @@ fn canonical_shapes_land_where_the_scene_puts_them() {
         let (canonical, place) = match shape {
             Shape::Sphere { center, radius } => ([0.0, 1.0, 0.0], *center + DVec3::Y * *radius),
             Shape::Quad { center, u, v } => ([1.0, -1.0, 0.0], *center + *u - *v),
-            Shape::Mesh { .. } => panic!("{name} is a mesh"),
+            Shape::Mesh { .. } | Shape::Canonical { .. } => panic!("{name} is no sphere or quad"),
         };
         let world = map(&instance.to_world, canonical);
         let back = map(&instance.to_object, world);
@@ -75,7 +79,7 @@ fn a_mesh_used_twice_is_built_once() {
     let twice = arrays(&scene);
     assert_eq!(twice.triangles.len(), once.triangles.len());
     assert_eq!(twice.instances.len(), once.instances.len() + 1);
-    let roots: Vec<u32> = twice.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.root).collect();
+    let roots: Vec<u32> = twice.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.detail).collect();
     assert_eq!(roots, [roots[0]; 2]);
     assert!(roots[0] > 0 && (roots[0] as usize) < twice.nodes.len());
 }
@@ -84,7 +88,7 @@ fn a_mesh_used_twice_is_built_once() {
 fn indices_stay_inside_their_arrays() {
     let all = arrays(&load("bunny"));
     let (mut open, mut triangles) = (vec![], 0);
-    open.extend(all.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.root));
+    open.extend(all.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.detail));
     while let Some(index) = open.pop() {
         let node = all.nodes[index as usize];
         if node.count == 0 {

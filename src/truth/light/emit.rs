@@ -116,6 +116,9 @@ impl Held {
         let balls = specular.flat_map(|o| match &o.shape {
             Shape::Sphere { center, radius } => vec![(*center, *radius)],
             Shape::Quad { center, u, v } => [*u + *v, *u - *v, *v - *u, -*u - *v].map(|d| (center + d, 0.0)).to_vec(),
+            Shape::Canonical { kind, to_world } => {
+                kind.hull().into_iter().map(|p| (to_world.transform_point3(p), 0.0)).collect()
+            }
             Shape::Mesh { mesh, to_world } => {
                 mesh.positions.iter().map(|p| (to_world.transform_point3(p.as_dvec3()), 0.0)).collect()
             }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Ray, Space, mask};
-use crate::scene::{MaterialKind, Shape};
+use crate::scene::{Canonical, MaterialKind, Shape};
 
 /// Media that can lie about a point at once; more are treated as if the innermost of these went on.
 const NESTED: usize = 16;
@@ -69,7 +69,7 @@ impl Space<'_> {
             let Some(surface) = self.nearest(&ray, mask::SPECULAR) else { break };
             let object = &self.scene.objects[surface.object];
             let dielectric = matches!(self.material(&surface).kind, MaterialKind::Dielectric { .. });
-            if dielectric && !matches!(object.shape, Shape::Quad { .. }) {
+            if dielectric && !is_open(&object.shape) {
                 let outwards = ray.d.dot(surface.ng) > 0.0;
                 match (outwards, entered.holds(surface.material)) {
                     (false, _) => entered = entered.entered(surface.material),
@@ -85,13 +85,29 @@ impl Space<'_> {
     /// Depth below open interfaces, and their materials.
     fn open_about(&self, p: DVec3) -> Vec<(f64, usize)> {
         let one = |object: &crate::scene::Object| {
-            let Shape::Quad { center, u, v } = &object.shape else { return None };
             matches!(self.scene.materials[object.material].kind, MaterialKind::Dielectric { .. }).then_some(())?;
-            let way = p - *center;
-            let depth = -way.dot(u.cross(*v).normalize_or_zero());
-            let within = |edge: &DVec3| way.dot(*edge).abs() <= edge.length_squared();
-            (depth > 0.0 && within(u) && within(v)).then_some((depth, object.material))
+            Some((depth_below(&object.shape, p)?, object.material))
         };
         self.scene.objects.iter().filter_map(one).collect()
     }
+}
+
+fn is_open(shape: &Shape) -> bool {
+    matches!(shape, Shape::Quad { .. } | Shape::Canonical { kind: Canonical::Disk, .. })
+}
+
+/// How deep a point lies below an open interface, within its outline as seen along the normal.
+fn depth_below(shape: &Shape, p: DVec3) -> Option<f64> {
+    let (center, u, v, round) = match shape {
+        Shape::Quad { center, u, v } => (*center, *u, *v, false),
+        Shape::Canonical { kind: Canonical::Disk, to_world } => {
+            (to_world.translation, to_world.matrix3.x_axis, to_world.matrix3.y_axis, true)
+        }
+        _ => return None,
+    };
+    let way = p - center;
+    let depth = -way.dot(u.cross(v).normalize_or_zero());
+    let (x, y) = (way.dot(u) / u.length_squared(), way.dot(v) / v.length_squared());
+    let within = if round { x * x + y * y <= 1.0 } else { x.abs() <= 1.0 && y.abs() <= 1.0 };
+    (depth > 0.0 && within).then_some(depth)
 }

@@ -1,7 +1,7 @@
-//! Exact intersection in float64: spheres and quads as they are, meshes by their triangles, one hierarchy over all.
+//! Exact intersection in float64: analytic shapes as they are, meshes by their triangles, one hierarchy over all.
 //!
 //! Self-intersection has no scale: a ray knows the primitive that it starts on. That one is met again only at the far
-//! end of a sphere's chord; others from [`APART`] of the coordinates on. Surfaces closer than that to each other (two
+//! end of a chord; others from [`APART`] of the coordinates on. Surfaces closer than that to each other (two
 //! that coincide) count as one, the first in the scene's order: the truth's stated bias.
 
 mod bvh;
@@ -165,6 +165,7 @@ fn primitives(shape: &Shape) -> Vec<Primitive> {
     match shape {
         Shape::Sphere { center, radius } => vec![Primitive::Sphere(*center, *radius)],
         Shape::Quad { center, u, v } => vec![Primitive::Quad(*center, *u, *v)],
+        Shape::Canonical { kind, to_world } => vec![Primitive::canonical(*kind, *to_world)],
         Shape::Mesh { mesh, to_world } => {
             let to_normal = to_world.matrix3.inverse().transpose();
             let point = |i: u32| to_world.transform_point3(mesh.positions[i as usize].as_dvec3());

@@ -1,6 +1,8 @@
 //! One primitive: where a ray meets it, and what the surface is there.
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
+
+use crate::scene::Canonical;
 
 /// A ray; `d` is a unit vector.
 #[derive(Clone, Copy, Debug)]
@@ -9,7 +11,7 @@ pub struct Ray {
     pub o: DVec3,
     /// Unit direction of travel.
     pub d: DVec3,
-    /// The primitive it starts on, which it meets again only on the far side of a sphere.
+    /// The primitive it starts on, which it meets again only at the far end of a chord.
     pub left: Option<u32>,
 }
 
@@ -20,19 +22,38 @@ pub enum Primitive {
     Sphere(DVec3, f64),
     /// Centre, half edges.
     Quad(DVec3, DVec3, DVec3),
+    /// A canonical shape in its own space.
+    Canonical(Box<Placed>),
     /// Corners, and the unit normals to interpolate.
     Triangle([DVec3; 3], [DVec3; 3]),
+}
+
+/// Where a canonical shape is.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    kind: Canonical,
+    to_world: DAffine3,
+    to_object: DAffine3,
 }
 
 /// Distance along the ray and, of quads and triangles, the place on the primitive.
 pub type Meeting = (f64, DVec2);
 
 impl Primitive {
+    /// A canonical shape under a map.
+    pub fn canonical(kind: Canonical, to_world: DAffine3) -> Self {
+        Self::Canonical(Box::new(Placed { kind, to_world, to_object: to_world.inverse() }))
+    }
+
     /// Smallest and largest corner of the box about it.
     pub fn bounds(&self) -> [DVec3; 2] {
         match self {
             Self::Sphere(c, r) => [*c - *r, *c + *r],
             Self::Quad(c, u, v) => [*c - u.abs() - v.abs(), *c + u.abs() + v.abs()],
+            Self::Canonical(placed) => {
+                let points = placed.kind.hull().into_iter().map(|p| placed.to_world.transform_point3(p));
+                points.map(|p| [p; 2]).reduce(|[a, b], [p, _]| [a.min(p), b.max(p)]).unwrap_or_default()
+            }
             Self::Triangle([a, b, c], _) => [a.min(*b).min(*c), a.max(*b).max(*c)],
         }
     }
@@ -43,6 +64,10 @@ impl Primitive {
         match self {
             Self::Sphere(c, _) if starts_here => chord(ray, *c).map(|t| (t, DVec2::ZERO)),
             Self::Sphere(c, r) => sphere(ray, *c, *r, near).map(|t| (t, DVec2::ZERO)),
+            Self::Canonical(placed) => {
+                let (o, d) = placed.local(ray);
+                placed.kind.meet(o, d, near, starts_here).map(|t| (t, DVec2::ZERO))
+            }
             _ if starts_here => None,
             Self::Quad(c, u, v) => quad(ray, *c, *u, *v, near),
             Self::Triangle(corners, _) => triangle(ray, corners, near),
@@ -60,6 +85,12 @@ impl Primitive {
                 let n = u.normalize().cross(v.normalize()).normalize();
                 (c + at.x * u + at.y * v, n, n)
             }
+            Self::Canonical(placed) => {
+                let (o, d) = placed.local(ray);
+                let (p, normal) = placed.kind.foot(o + t * d);
+                let n = (placed.to_object.matrix3.transpose() * normal).normalize_or(-ray.d);
+                (placed.to_world.transform_point3(p), n, n)
+            }
             Self::Triangle([a, b, c], normals) => {
                 let n = scaled_normal(*b - *a, *c - *a);
                 let weights = [1.0 - at.x - at.y, at.x, at.y];
@@ -68,6 +99,13 @@ impl Primitive {
                 (a + at.x * (b - a) + at.y * (c - a), n, if bent.dot(n) < 0.0 { -bent } else { bent })
             }
         }
+    }
+}
+
+impl Placed {
+    /// The ray in the shape's own space; its direction keeps the length that the map gives it, so t stays metres.
+    fn local(&self, ray: &Ray) -> (DVec3, DVec3) {
+        (self.to_object.transform_point3(ray.o), self.to_object.transform_vector3(ray.d))
     }
 }
 

@@ -1,0 +1,111 @@
+//! Canonical shapes: checked, and put in place.
+use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+
+use super::{
+    Canonical, Material, MaterialKind, Shape, WHOLE,
+    error::SceneError,
+    file::{BoxFile, CylinderFile, DiskFile, Floats, ParaboloidFile},
+    locate::Key,
+};
+
+/// Sine between an axis and a direction below which it has no part across the axis.
+const ACROSS: f64 = 1e-6;
+const FULL_TURN: f64 = 360.0;
+
+/// Turned about x, then y, then z, by degrees.
+pub fn turned(key: &Key, rotate: Floats<3>) -> Result<DMat3, SceneError> {
+    for angle in rotate.0 {
+        key.number(angle, -FULL_TURN..=FULL_TURN, "degrees", "a full turn is 360")?;
+    }
+    let [x, y, z] = rotate.0.map(f64::to_radians);
+    Ok(DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x)))
+}
+
+pub fn cuboid(key: &Key, file: &BoxFile, unit: f64) -> Result<Shape, SceneError> {
+    let center = key.key("center").point(file.center, unit)?;
+    let half = key.key("half");
+    let [x, y, z] = file.half.0.map(|half_edge| half.size(half_edge, unit));
+    let linear = turned(&key.key("rotate"), file.rotate)? * DMat3::from_diagonal(DVec3::new(x?, y?, z?));
+    Ok(placed(Canonical::Box, linear, center))
+}
+
+pub fn disk(key: &Key, file: &DiskFile, unit: f64) -> Result<Shape, SceneError> {
+    let center = key.key("center").point(file.center, unit)?;
+    let normal = key.key("normal").direction(file.normal)?;
+    let radius = key.key("radius").size(file.radius, unit)?;
+    Ok(placed(Canonical::Disk, frame(normal, None) * radius, center))
+}
+
+pub fn cylinder(key: &Key, file: &CylinderFile, unit: f64) -> Result<Shape, SceneError> {
+    let base = key.key("base").point(file.base, unit)?;
+    let axis = key.key("axis").direction(file.axis)?;
+    let radius = key.key("radius").size(file.radius, unit)?;
+    let height = key.key("height").size(file.height, unit)?;
+    let arc = key.key("arc").number(file.arc, 1e-3..=FULL_TURN, "degrees of arc", "360 makes the whole tube")?;
+    let middle = middle(&key.key("middle"), axis, file.middle, "an arc below 360°", arc < FULL_TURN)?;
+    let cut = if arc < FULL_TURN { (0.5 * arc.to_radians()).cos() } else { WHOLE };
+    let linear = frame(axis, middle) * DMat3::from_diagonal(DVec3::new(radius, radius, height));
+    Ok(placed(Canonical::Cylinder { cut }, linear, base))
+}
+
+pub fn paraboloid(key: &Key, file: &ParaboloidFile, unit: f64) -> Result<Shape, SceneError> {
+    let vertex = key.key("vertex").point(file.vertex, unit)?;
+    let axis = key.key("axis").direction(file.axis)?;
+    let focal_length = key.key("focal_length").size(file.focal_length, unit)?;
+    let rim = key.key("rim").size(file.rim, unit)?;
+    let from = file.from.map(|from| {
+        let cut = from * unit / rim;
+        key.key("from").number(
+            cut,
+            -1.0..=0.999,
+            "a distance from the axis, over the rim's",
+            "leave some of the mirror",
+        )
+    });
+    let cut = from.transpose()?;
+    let middle = middle(&key.key("middle"), axis, file.middle, "a part of it", cut.is_some())?;
+    let depth = rim * rim / (4.0 * focal_length);
+    let linear = frame(axis, middle) * DMat3::from_diagonal(DVec3::new(rim, rim, depth));
+    Ok(placed(Canonical::Paraboloid { cut: cut.unwrap_or(WHOLE) }, linear, vertex))
+}
+
+/// The direction of the part's middle, across the axis.
+fn middle(
+    key: &Key,
+    axis: DVec3,
+    written: Option<Floats<3>>,
+    of: &str,
+    needed: bool,
+) -> Result<Option<DVec3>, SceneError> {
+    let Some(written) = written else {
+        let remedy = "add `middle`: from the axis to the middle of the part that is there";
+        return if needed { Err(key.fault(format!("a direction, for {of}"), "none", remedy)) } else { Ok(None) };
+    };
+    let direction = key.direction(written)?;
+    if direction.cross(axis).length() < ACROSS {
+        return Err(key.fault("a direction across the axis", "one along it", "turn one of the two"));
+    }
+    Ok(Some(direction))
+}
+
+/// Right-handed, z along the axis, x as near to `towards` as that lets it be.
+fn frame(axis: DVec3, towards: Option<DVec3>) -> DMat3 {
+    let x = towards.map_or_else(|| axis.any_orthonormal_vector(), |t| (t - axis * t.dot(axis)).normalize());
+    DMat3::from_cols(x, axis.cross(x), axis)
+}
+
+fn placed(kind: Canonical, linear: DMat3, at: DVec3) -> Shape {
+    Shape::Canonical { kind, to_world: DAffine3::from_mat3_translation(linear, at) }
+}
+
+/// A tube or bowl of glass has an inside, but no end to it: which medium holds a point is not said.
+pub fn refuse_open_shell(key: &Key, shape: &Shape, material: &Material) -> Result<(), SceneError> {
+    let Shape::Canonical { kind, .. } = shape else { return Ok(()) };
+    let shell = matches!(kind, Canonical::Cylinder { .. } | Canonical::Paraboloid { .. });
+    if !shell || !matches!(material.kind, MaterialKind::Dielectric { .. }) {
+        return Ok(());
+    }
+    let found = format!("the dielectric `{}` on an open shell", material.name);
+    let remedy = "open shells of glass are not built yet; name a mirror or a diffuse material, or use a closed shape";
+    Err(key.key("material").fault(format!("a mirror or a diffuse material on a {}", kind.name()), found, remedy))
+}
