@@ -202,7 +202,7 @@ fn a_run_that_was_resumed_has_the_same_bits() {
 }
 
 /// Photons between which the error's fall is measured, and the slope it must not be above: −1/2 in the error is −1 in its
-/// square. Measured −1.2, while longer sequences still gain; a run of more than 16 million photons falls as the root.
+/// square. Measured −1.2, while longer sequences still gain; a run of more than 8 million photons falls as the root.
 const FALL: [u64; 2] = [20_000, 2_000_000];
 const SLOPE: f64 = -1.0;
 

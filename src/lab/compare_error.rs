@@ -34,8 +34,8 @@ pub enum CompareError {
     )]
     Masked { image: String, masked: usize, pixels: usize },
     #[error(
-        "neither {image} nor {reference} says how bright the region is (attribute nephroid.e0 above 0): render the image \
-         again"
+        "neither {image} nor {reference} says how bright the region is (attribute nephroid.e0 above 0): make the \
+         image again, of a scene that lights its region"
     )]
     Yardstick { image: String, reference: String },
     #[error(

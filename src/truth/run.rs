@@ -23,7 +23,7 @@ pub const VERSION: u32 = 3;
 /// ε of the judged figure: (this share of E₀)².
 const EPSILON: f64 = 0.1;
 /// Photons of a chunk, at least and at most.
-const PER_CHUNK: [u64; 2] = [1 << 10, 1 << 18];
+const PER_CHUNK: [u64; 2] = [1 << 10, 1 << 17];
 
 /// What decides every bit of a truth.
 #[derive(Clone, Debug)]

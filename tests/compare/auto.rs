@@ -113,7 +113,7 @@ fn made_once_found_again_listed_and_cleared() {
     let image = rough(&folder, "i.exr", &shipped("glass-sphere"));
     let first = auto(&folder, &[&image], JSON);
     let (made, figure) = judged(&first);
-    assert!(made.starts_with("truth of glass-sphere, transmit-2, 16x16: 2097152 photons, noise relmse "), "{made}");
+    assert!(made.starts_with("truth of glass-sphere, transmit-2, 16x16: 4194304 photons, noise relmse "), "{made}");
     assert!(made.ends_with(", made to a tenth of the figure"), "{made}");
     assert!(first.err.contains("making the truth of glass-sphere, transmit-2, 16x16, for 120 s"), "{}", first.err);
     assert_eq!(first.json()["reference"], "auto");
@@ -124,7 +124,7 @@ fn made_once_found_again_listed_and_cleared() {
     assert_eq!((found, again), (made.replace("made to a tenth of the figure", "from the store"), figure));
     assert!(!second.err.contains("making"), "{}", second.err);
     let listed = run(&folder, &["truth", "--list"]).out;
-    assert!(listed.lines().count() == 2 && listed.contains("transmit-2  region  16x16  0  2097152"), "{listed}");
+    assert!(listed.lines().count() == 2 && listed.contains("transmit-2  region  16x16  0  4194304"), "{listed}");
     assert_eq!(run(&folder, &["truth", "--clear"]).out, "1 removed, and the sums of 1\n");
     assert_eq!(run(&folder, &["truth", "--clear"]).out, "0 removed\n");
 }
@@ -153,10 +153,10 @@ fn a_better_picture_needs_more_of_the_same_truth() {
     let (folder, anew) = (folder(), folder());
     let scene = shipped("glass-sphere");
     judged(&auto(&folder, &[&rough(&folder, "i.exr", &scene)], JSON));
-    let image = close(&folder, 1.02, &scene);
+    let image = close(&folder, 1.004, &scene);
     let first = auto(&folder, &[&image], JSON);
     let (word, figure) = judged(&first);
-    assert!(word.ends_with("made to a tenth of the figure") && photons(&word) > 2_097_152, "{word}");
+    assert!(word.ends_with("made to a tenth of the figure") && photons(&word) > 4_194_304, "{word}");
     let mut other = command(&anew, &["compare", &image, "--reference", "auto", "--format", "json"]);
     let fresh = other.env("RAYON_NUM_THREADS", "3").output().expect("the program starts");
     assert_eq!(judged(&fresh.into()), (word, figure));
@@ -179,7 +179,7 @@ fn stopped_by_the_clock_it_says_so_and_goes_on_later() {
         photons(&word)
     };
     let first = stopped(&auto(&folder, &[&image], &["--max-seconds", "0", "--format", "json"]));
-    assert!((2 * 65536..2_097_152).contains(&first), "{first}");
+    assert!((2 * 65536..4_194_304).contains(&first), "{first}");
     // Its noise happens to do for a figure that large.
     let (word, _) = judged(&auto(&folder, &[&image], JSON));
     assert!(word.ends_with("from the store") && photons(&word) == first, "{word}");
@@ -208,7 +208,7 @@ fn interrupted_it_keeps_the_sums() {
     let ran = Ran::from(child.wait_with_output().unwrap());
     fails(&ran, 130, &["interrupted", "kept: the photons so far"]);
     let (word, _) = judged(&auto(&folder, &[&image], &["--max-seconds", "0", "--format", "json"]));
-    assert!(word.contains("stopped after 0 s") && photons(&word) > 2_097_152, "{word}");
+    assert!(word.contains("stopped after 0 s") && photons(&word) > 4_194_304, "{word}");
 }
 
 /// Scenes of a file: with their overrides, changed, broken, gone.

@@ -117,7 +117,7 @@ fn light_starts_in_the_medium_about_it() {
             "[materials.glass.dielectric]\nior = 1.5\nabsorption = 0.0",
             "[materials.silver.mirror]\nreflectance = 1.0",
         ));
-    let (balance, landings) = flux(&scene, PathClass::Reflect1, 4096);
+    let (balance, landings) = flux(&scene, PathClass::Reflect1, 16384);
     let from_the_ball = landings.iter().filter_map(|l| {
         let back = l.surface.p.dot(l.d);
         let half = (1.0 - (l.surface.p.length_squared() - back * back)).sqrt();

@@ -29,6 +29,32 @@ fn sphere_and_floor_by_hand() {
     assert!(!space.blocked(&beside, 6.4, mask::DIFFUSE) && space.blocked(&beside, 6.6, mask::DIFFUSE));
 }
 
+/// Rays that touch the ball, by less than rounding inside and outside: each is met or not, and goes on as a unit vector.
+#[test]
+fn tangent_rays_are_met_or_missed_and_finite() {
+    let scene = scene("glass-sphere", &[]);
+    let space = Space::new(&scene);
+    let mut met = 0;
+    for beside in [0.0, 1e-17, 1e-16, 3e-16, 1e-15, 1e-12, 1e-9] {
+        for side in [-1.0, 1.0] {
+            let ray = ray([1.0 + side * beside, 5.0, 0.0], [0.0, -1.0, 0.0]);
+            let found = space.nearest(&ray, mask::ALL).expect("the floor at least");
+            assert!(found.p.is_finite() && found.ng.is_normalized(), "{beside}: {found:?}");
+            if !space.material(&found).is_specular() {
+                continue;
+            }
+            met += 1;
+            let (through, back) = (found.transmit(ray.d, 1.0, 1.5), found.reflect(ray.d, 1.0, 1.5));
+            for bend in through.into_iter().chain([back]) {
+                assert!(bend.d.is_normalized() && (0.0..=1.0).contains(&bend.share), "{beside}: {bend:?}");
+            }
+            // What touches is reflected whole, and goes on as it came.
+            assert!((back.d - ray.d).length() < 1e-3 && back.share > 0.99, "{beside}: {back:?}");
+        }
+    }
+    assert!(met >= 4, "{met} of the rays that lie inside by more than rounding");
+}
+
 #[test]
 fn the_hierarchy_finds_what_trying_every_primitive_finds() {
     let scene = scene("bunny", &[]);
