@@ -2,6 +2,7 @@
 
 mod plan;
 mod read;
+mod show;
 
 use std::{sync::Arc, time::Instant};
 
@@ -10,6 +11,7 @@ use glam::DVec3;
 use crate::{
     gpu::{Feature, FrameTimes, Gpu, GpuError, PassCounters, Phase, Plan, Program, Reused, Sources},
     methods::Method,
+    names::NoSuch,
     passes::{
         PlanError, accel,
         account::{Account, AccountRow},
@@ -23,7 +25,8 @@ use crate::{
 };
 
 pub use plan::{Planned, Providers, plan};
-pub use read::{Dump, Energy};
+pub use read::{Dump, Energy, resource};
+pub use show::LAYERS;
 
 /// An error of rendering.
 #[derive(Debug, thiserror::Error)]
@@ -46,14 +49,9 @@ pub enum RenderError {
         /// What is missing.
         lacks: String,
     },
-    /// No layer or resource of that name.
-    #[error("there is no '{name}'; there are: {known}")]
-    Unknown {
-        /// What was asked for.
-        name: String,
-        /// What there is.
-        known: String,
-    },
+    /// No camera or resource of that name.
+    #[error(transparent)]
+    Unknown(#[from] NoSuch),
 }
 
 /// What a frame is made for.
@@ -100,12 +98,9 @@ pub struct Job {
 }
 
 impl Job {
-    /// The camera of that name, or an error that lists them.
+    /// The camera of that name, or an error that says which are near.
     pub fn camera(&self) -> Result<&Camera, RenderError> {
-        self.scene.cameras.get(&self.camera).ok_or_else(|| RenderError::Unknown {
-            name: format!("camera {}", self.camera),
-            known: self.scene.cameras.keys().cloned().collect::<Vec<_>>().join(", "),
-        })
+        Ok(self.scene.camera(&self.camera)?)
     }
 
     /// Samples a pixel along each axis: the value in force of `eye.samples`.

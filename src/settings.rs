@@ -2,6 +2,8 @@
 
 use std::{collections::BTreeMap, ops::RangeInclusive};
 
+use crate::names;
+
 /// A whole number.
 #[derive(Debug)]
 pub struct Whole {
@@ -119,7 +121,7 @@ pub enum SettingError {
     Unknown {
         /// What was asked for.
         key: String,
-        /// The near names.
+        /// The names near to it, as a question.
         near: String,
     },
     /// A value outside its range, or of another kind.
@@ -148,7 +150,9 @@ impl Settings {
     /// Sets one of `known` from text.
     pub fn set(&mut self, known: &[Setting], key: &str, value: &str) -> Result<(), SettingError> {
         let Some(setting) = known.iter().find(|s| s.key() == key) else {
-            return Err(SettingError::Unknown { key: key.to_owned(), near: near_names(known, key) });
+            let near = names::guess(key, known.iter().map(|s| s.key())).map(|near| format!("; {near}"));
+            let near = near.unwrap_or_default();
+            return Err(SettingError::Unknown { key: key.to_owned(), near });
         };
         if !setting.check(value) {
             let unit = if setting.unit().is_empty() { String::new() } else { format!(" {}", setting.unit()) };
@@ -185,24 +189,6 @@ impl Settings {
     }
 }
 
-fn near_names(known: &[Setting], key: &str) -> String {
-    let last = |k: &str| k.rsplit('.').next().unwrap_or_default().to_owned();
-    let mut near: Vec<_> = known
-        .iter()
-        .map(|s| {
-            (
-                strsim::damerau_levenshtein(s.key(), key)
-                    .min(1 + strsim::damerau_levenshtein(&last(s.key()), &last(key))),
-                s.key(),
-            )
-        })
-        .filter(|(distance, _)| *distance <= 3)
-        .collect();
-    near.sort();
-    let near: Vec<_> = near.into_iter().take(3).map(|(_, key)| key).collect();
-    if near.is_empty() { String::new() } else { format!("; near: {}", near.join(", ")) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -225,8 +211,8 @@ mod tests {
     #[test]
     fn a_wrong_name_lists_the_near_ones() {
         let text = Settings::default().set(KNOWN, "light.sied", "64").unwrap_err().to_string();
-        assert!(text.contains("near: light.side"), "{text}");
+        assert!(text.contains("did you mean `light.side`?"), "{text}");
         let text = Settings::default().set(KNOWN, "maps.side", "64").unwrap_err().to_string();
-        assert!(text.contains("near: light.side"), "{text}");
+        assert!(text.contains("did you mean `light.side`?"), "{text}");
     }
 }

@@ -74,7 +74,7 @@ const LATTICE: f64 = 5e-3;
 
 /// Mean irradiance of each band by maps and by the truth.
 fn means(scene: &Scene) -> [[f64; 3]; 2] {
-    let set = [("light.side", "512"), ("maps.side", "64"), ("light.paths", "reflect-1")];
+    let set = [("light.side", "2048"), ("maps.side", "64"), ("light.paths", "reflect-1")];
     let found = picture(&gpu(), &job_of(scene.clone(), &set, "region", [16, 16]));
     let goal = Goal { photons: Some(96 * 96), noise: None };
     let (estimator, paths) = (Estimator::Cells, PathClass::Reflect1);

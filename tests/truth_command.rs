@@ -41,14 +41,20 @@ fn killed_twenty_times_it_ends_with_the_same_bytes() {
         let (straight, broken) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         assert!(run(&line, &straight, "t.exr").status.success());
         let resumed = format!("{line} --resume");
-        let mut killed = 0;
+        let (mut killed, mut before) = (0, 0);
         for k in 0..20u64 {
-            let mut child = command(&resumed, broken.path(), "t.exr").stderr(Stdio::null()).spawn().unwrap();
-            sleep(Duration::from_millis(40 + k * 37 % 160));
+            let mut child = command(&resumed, broken.path(), "t.exr").stderr(Stdio::piped()).spawn().unwrap();
+            sleep(Duration::from_millis(60 + k * 37 % 160));
             killed += u32::from(child.try_wait().unwrap().is_none());
             child.kill().unwrap();
-            child.wait().unwrap();
+            // What it went on from is never less than what the one before went on from: nothing that was kept is lost.
+            let said = error(&child.wait_with_output().unwrap());
+            let from =
+                said.split("going on after ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<u64>().ok());
+            assert!(from.unwrap_or(before) >= before, "{how}: {from:?} after {before}: {said}");
+            before = from.unwrap_or(before);
         }
+        assert!(before > 0, "{how}: twenty runs, and none went on from what was done before");
         println!("{how}: killed {killed} times");
         // Where a machine is so fast that it finishes between kills, those that came before count.
         assert!(killed >= 1, "{how}: finished before the first kill");
@@ -101,27 +107,39 @@ fn stopped_by_the_clock_it_writes_and_goes_on() {
     assert!(first.status.success() && error(&first).contains("not finished"), "{}", error(&first));
     let second = run(&format!("{LONG} --max-seconds 0 --resume"), &folder, "t.exr");
     assert!(error(&second).contains("going on after"), "{}", error(&second));
-    // Another task does not take what this one left, nor another estimator.
-    let other = run(&format!("{LONG} --max-seconds 0 --resume --estimator cells"), &folder, "t.exr");
-    assert!(error(&other).contains("of another task"), "{}", error(&other));
-    let other = run(&format!("{LONG} --max-seconds 0 --resume --seed 1"), &folder, "t.exr");
-    assert!(error(&other).contains("of another task"), "{}", error(&other));
+    // Another noise asked for is the same photons.
+    let lower = run(&format!("{LONG} --max-seconds 0 --resume --until relmse=1e-9"), &folder, "t.exr");
+    assert!(lower.status.success() && error(&lower).contains("going on after"), "{}", error(&lower));
+    // Another task does not take what this one left, and does not write over it; nor does one that does not ask for it.
+    let kept = fs::read(folder.path().join("t.exr.partial")).unwrap();
+    for (more, code, words) in [
+        ("--resume --estimator cells", 1, "of another task"),
+        ("--resume --seed 1", 1, "of another task"),
+        ("", 2, "--resume"),
+    ] {
+        let other = run(format!("{LONG} --max-seconds 0 {more}").trim(), &folder, "t.exr");
+        assert!(other.status.code() == Some(code) && error(&other).contains(words), "{more}: {}", error(&other));
+        assert!(fs::read(folder.path().join("t.exr.partial")).unwrap() == kept, "{more}");
+    }
 }
 
 #[test]
 fn what_cannot_be_done_is_said() {
     let folder = tempfile::tempdir().unwrap();
     for (line, code, words) in [
-        ("truth glass-sphere --camera nowhere", 2, "the scene has: main, region"),
+        ("truth glass-sphere --camera nowhere", 2, "choose one of `main`, `region`"),
         ("truth glass-sphere --until mse=1", 2, "relmse=X"),
         ("truth glass-sphere --paths some", 2, "reflect-1"),
-        ("truth glass-sphere --estimator guess", 2, "photons or cells"),
+        ("truth glass-sphere --estimator guess", 2, "choose one of `photons`, `cells`"),
         ("truth glass-sphere --set light.side=4", 2, "scene.PATH=VALUE"),
         ("truth nothing-of-the-kind", 2, "nothing-of-the-kind"),
     ] {
         let output = run(line, &folder, "t.exr");
         assert!(output.status.code() == Some(code) && error(&output).contains(words), "{line}: {}", error(&output));
     }
+    fs::create_dir(folder.path().join("place")).unwrap();
+    let place = run(SHORT, &folder, "place");
+    assert!(place.status.code() == Some(2) && error(&place).contains("a folder"), "{}", error(&place));
     let nowhere = run(SHORT, &folder, "missing/t.exr");
     assert!(nowhere.status.code() == Some(1) && error(&nowhere).contains("missing"), "{}", error(&nowhere));
 }
@@ -133,4 +151,19 @@ fn without_specular_objects_there_is_direct_light_alone() {
     assert!(output.status.success(), "{}", error(&output));
     let (layers, _) = Layers::from_exr(&fs::read(folder.path().join("t.exr")).unwrap()).unwrap();
     assert!(layers.get("irradiance.caustic").is_none() && layers.get("irradiance.direct").is_some());
+}
+
+/// Ctrl-C is heard while direct light is sampled, before there is anything to keep.
+#[test]
+fn an_interrupt_is_heard_from_the_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "truth bunny --camera region --size 4096x4096 --photons 10";
+    let child = command(line, folder.path(), "t.exr").stderr(Stdio::piped()).spawn().unwrap();
+    sleep(Duration::from_millis(700));
+    let started = std::time::Instant::now();
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", error(&output));
+    assert!(started.elapsed() < Duration::from_secs(5), "{:?}", started.elapsed());
+    assert!(!folder.path().join("t.exr").exists());
 }

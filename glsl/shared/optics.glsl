@@ -49,7 +49,8 @@ float fresnel_conductor(float cos_i, float eta, float k) {
     float sin2 = 1.0 - cos2;
     float t0 = eta * eta - k * k - sin2;
     float a2b2 = sqrt(t0 * t0 + 4.0 * eta * eta * k * k);
-    float a = sqrt(max(0.5 * (a2b2 + t0), 0.0));
+    // a b = eta k: the sum that cancels is not taken.
+    float a = t0 < 0.0 ? eta * k / sqrt(0.5 * (a2b2 - t0)) : sqrt(0.5 * (a2b2 + t0));
     float sum_s = a2b2 + cos2 + 2.0 * a * c;
     float s = sum_s > 0.0 ? max((a2b2 + cos2 - 2.0 * a * c) / sum_s, 0.0) : 1.0;
     float sum_p = cos2 * a2b2 + sin2 * sin2 + 2.0 * a * c * sin2;

@@ -8,6 +8,7 @@ use super::Failure;
 use crate::{
     lab::Format,
     methods::{self, Method},
+    names::NoSuch,
     renderer::{self, Job, Providers},
     scene::Scene,
     settings::Settings,
@@ -58,11 +59,20 @@ pub struct PlanArgs {
 
 #[derive(Args)]
 pub struct ScenesArgs {
-    /// Print this scene's file
-    #[arg(conflicts_with = "format")]
+    /// Say what is in this scene: a shipped one by name, or the path of a .toml file
+    #[arg(value_name = "SCENE")]
     pub name: Option<String>,
+    /// Print the scene's file as it is written
+    #[arg(long, requires = "name", conflicts_with = "format")]
+    pub source: bool,
     #[command(flatten)]
     pub list: ListArgs,
+}
+
+#[derive(Args)]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: clap_complete::Shell,
 }
 
 #[derive(Args)]
@@ -158,13 +168,11 @@ fn parse_time(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|t: &f64| t.is_finite()).ok_or_else(|| "expected a number of seconds".to_owned())
 }
 
-fn parse_method(text: &str) -> Result<Choice, String> {
-    if text == "none" {
-        return Ok(Choice(None));
+fn parse_method(text: &str) -> Result<Choice, NoSuch> {
+    match text {
+        "none" => Ok(Choice(None)),
+        name => methods::find(name).map(|method| Choice(Some(method))),
     }
-    let names: Vec<_> = methods::ALL.iter().map(|m| m.name()).chain(["none"]).collect();
-    let found = methods::find(text).map(|method| Choice(Some(method)));
-    found.ok_or_else(|| format!("there is no such method; there are: {}", names.join(", ")))
 }
 
 impl ValueEnum for Format {

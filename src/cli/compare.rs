@@ -19,6 +19,7 @@ use super::{
 };
 use crate::{
     lab::{self, Auto, CompareReport, Comparison, LabError, Limit, MEASURES, Making, Picture, Report},
+    names::NoSuch,
     store::Store,
     whole::OutFolder,
 };
@@ -115,7 +116,8 @@ impl Bars {
             Some((subject, bar)) if subject == making.subject => bar.at(&making.standing),
             _ => {
                 say(&format!("making the truth of {}, for {} s at most", making.subject, self.seconds));
-                let bar = TruthProgress::new(Some(self.seconds), making.standing.photons);
+                let mut bar = TruthProgress::new(Some(self.seconds));
+                bar.start(making.standing.photons);
                 self.of = Some((making.subject.to_owned(), bar));
             }
         }
@@ -137,8 +139,9 @@ fn write_maps(mut folder: OutFolder, paths: &[PathBuf], comparisons: &[Compariso
 
 fn parse_limit(text: &str) -> Result<Limit, String> {
     let expected = || format!("expected MEASURE=VALUE, a number not below 0; measures: {}", MEASURES.join(", "));
+    let unknown = |name| NoSuch::new("measure", name, MEASURES).to_string();
     let (name, value) = text.split_once('=').ok_or_else(expected)?;
-    let measure = MEASURES.into_iter().find(|measure| *measure == name).ok_or_else(expected)?;
+    let measure = MEASURES.into_iter().find(|measure| *measure == name).ok_or_else(|| unknown(name))?;
     let most = value.parse().ok().filter(|most: &f64| most.is_finite() && *most >= 0.0).ok_or_else(expected)?;
     Ok(Limit { measure, most })
 }

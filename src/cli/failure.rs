@@ -6,11 +6,13 @@ use crate::{
     gpu::GpuError,
     image::ImageError,
     lab::{CompareError, LabError},
+    names::NoSuch,
     passes::PlanError,
     renderer::RenderError,
     scene::{Place, SceneError},
     settings::SettingError,
     whole::FileError,
+    window::WindowError,
 };
 
 const FAILED: u8 = 1;
@@ -45,6 +47,11 @@ impl Failure {
         Self { code: THRESHOLD, error: error.into() }
     }
 
+    /// Nothing here can do it.
+    pub(super) fn no_device(error: impl Into<anyhow::Error>) -> Self {
+        Self { code: NO_DEVICE, error: error.into() }
+    }
+
     /// The process's exit code.
     pub fn code(&self) -> ExitCode {
         ExitCode::from(self.code)
@@ -60,6 +67,12 @@ impl fmt::Display for Failure {
 
 impl From<SettingError> for Failure {
     fn from(error: SettingError) -> Self {
+        Self::usage(error)
+    }
+}
+
+impl From<NoSuch> for Failure {
+    fn from(error: NoSuch) -> Self {
         Self::usage(error)
     }
 }
@@ -80,12 +93,14 @@ impl From<GpuError> for Failure {
 
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
-        use GpuError::{NoCapture, NoDevice, NoLoader, NoSuchDevice, TooLarge, Unsuitable};
+        use GpuError::{NoCapture, NoDevice, NoLoader, NoScreen, NoSuchDevice, TooLarge, Unsuitable};
         let code = match &error {
             RenderError::Lacks { .. } => NO_DEVICE,
-            RenderError::Gpu(NoDevice | NoLoader(_) | NoSuchDevice { .. } | Unsuitable { .. }) => NO_DEVICE,
+            RenderError::Gpu(NoDevice | NoLoader(_) | NoScreen(_) | NoSuchDevice { .. } | Unsuitable { .. }) => {
+                NO_DEVICE
+            }
             RenderError::Gpu(NoCapture(_) | TooLarge { .. }) => USAGE,
-            RenderError::Unknown { .. } | RenderError::Plan(PlanError::Refused { .. }) => USAGE,
+            RenderError::Unknown(_) | RenderError::Plan(PlanError::Refused { .. }) => USAGE,
             RenderError::Gpu(_) | RenderError::Plan(PlanError::Accel(_)) => FAILED,
         };
         Self { code, error: error.into() }
@@ -105,6 +120,16 @@ impl From<LabError> for Failure {
 impl From<CompareError> for Failure {
     fn from(error: CompareError) -> Self {
         Self::failed(error)
+    }
+}
+
+impl From<WindowError> for Failure {
+    fn from(error: WindowError) -> Self {
+        match error {
+            WindowError::Render(error) => error.into(),
+            WindowError::NoDisplay(_) => Self { code: NO_DEVICE, error: error.into() },
+            other => Self::failed(other),
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The commands that render nothing.
 
+use anyhow::anyhow;
+
 use super::{
     Failure,
     args::{ListArgs, PlanArgs, ScenesArgs},
@@ -7,7 +9,7 @@ use super::{
 };
 use crate::{
     gpu,
-    lab::{DevicesReport, MethodsReport, PlanReport, Report, ScenesReport},
+    lab::{DevicesReport, DoctorReport, MethodsReport, PlanReport, Report, SceneReport, ScenesReport},
     renderer,
     scene::Scene,
 };
@@ -26,15 +28,25 @@ pub fn devices(args: &ListArgs) -> Result<(), Failure> {
     print(&DevicesReport::new(&devices), args)
 }
 
+/// The report is printed whatever it says; the exit code says whether anything can be rendered.
+pub fn doctor(args: &ListArgs) -> Result<(), Failure> {
+    let report = DoctorReport::new();
+    print(&report, args)?;
+    match (report.has_device(), report.has_compiler()) {
+        (true, true) => Ok(()),
+        (false, _) => Err(Failure::no_device(anyhow!("no device can run any method; see the rows that do not say ok"))),
+        (true, false) => Err(Failure::failed(anyhow!("shaders do not compile; see the row of the compiler"))),
+    }
+}
+
 pub fn methods(args: &ListArgs) -> Result<(), Failure> {
     print(&MethodsReport::new(), args)
 }
 
 pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
-    match &args.name {
-        Some(name) => output::print(Scene::load(name, &[])?.source.text.as_bytes()),
-        None => print(&ScenesReport::new(), &args.list),
-    }
+    let Some(name) = &args.name else { return print(&ScenesReport::new(), &args.list) };
+    let scene = Scene::load(name, &[])?;
+    if args.source { output::print(scene.source.text.as_bytes()) } else { print(&SceneReport::new(&scene), &args.list) }
 }
 
 fn print(report: &impl Report, args: &ListArgs) -> Result<(), Failure> {

@@ -1,6 +1,6 @@
-//! Floor 6: the command line. Data on stdout, progress and logs on stderr.
+//! Floor 7: the command line. Data on stdout, progress and logs on stderr.
 //!
-//! Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device, 130 interrupted.
+//! Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device or display, 130 interrupted.
 
 mod args;
 mod compare;
@@ -11,10 +11,13 @@ mod progress;
 mod render;
 mod signals;
 mod truth;
+mod view;
 
 use std::time::Instant;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+
+use crate::window;
 
 pub use failure::Failure;
 
@@ -27,12 +30,15 @@ pub struct Cli {
 }
 
 const EXIT_CODES: &str =
-    "Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device, 130 interrupted";
+    "Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device or display, 130 interrupted";
 
 #[derive(Subcommand)]
 enum Command {
     /// Render a scene; write its layers, picture, timings and account of light
     Render(args::RenderArgs),
+    /// Show a scene in a window: orbit, zoom, layers, methods, and what each stage takes
+    #[command(after_help = window::help())]
+    View(view::ViewArgs),
     /// Judge pictures against a reference over the receiver region, by eight measures and their uncertainty
     Compare(compare::CompareArgs),
     /// Trace a scene's reference in float64 on the CPU, with its variance
@@ -41,10 +47,14 @@ enum Command {
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
     Devices(args::ListArgs),
+    /// Look at loader, layers, devices, compiler and folders: what is there, what is missing, and what to do about it
+    Doctor(args::ListArgs),
     /// List methods and settings, with units, defaults and ranges
     Methods(args::ListArgs),
-    /// List the shipped scenes, or print one
+    /// List the shipped scenes, or say what is in one
     Scenes(args::ScenesArgs),
+    /// Print a script that completes commands and options in a shell
+    Completions(args::CompletionsArgs),
 }
 
 impl Cli {
@@ -53,12 +63,22 @@ impl Cli {
         signals::file_size_limit_is_an_error()?;
         match self.command {
             Command::Render(args) => render::run(&args, started),
+            Command::View(args) => view::run(&args),
             Command::Compare(args) => compare::run(&args),
             Command::Truth(args) => truth::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
+            Command::Doctor(args) => list::doctor(&args),
             Command::Methods(args) => list::methods(&args),
             Command::Scenes(args) => list::scenes(&args),
+            Command::Completions(args) => completions(args.shell),
         }
     }
+}
+
+/// Written to memory first: the generator panics where its writer fails.
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "nephroid", &mut script);
+    output::print(&script)
 }

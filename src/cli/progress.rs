@@ -52,11 +52,22 @@ pub struct TruthProgress {
 impl TruthProgress {
     const STEPS: u64 = 1000;
 
-    pub fn new(max_seconds: Option<f64>, before: u64) -> Self {
+    pub fn new(max_seconds: Option<f64>) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {elapsed}");
-        let bar = ProgressBar::new(Self::STEPS).with_message("direct light");
+        let bar = ProgressBar::new(Self::STEPS);
         let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self { bar, max_seconds, before, started: Instant::now() }
+        Self { bar, max_seconds, before: 0, started: Instant::now() }
+    }
+
+    /// The share of direct light that is done.
+    pub fn direct(&self, share: f64) {
+        self.bar.set_position((share * Self::STEPS as f64) as u64);
+        self.bar.set_message("direct light");
+    }
+
+    /// From here on there are photons, of which so many were there before.
+    pub fn start(&mut self, before: u64) {
+        (self.before, self.started) = (before, Instant::now());
     }
 
     pub fn at(&self, standing: &Standing) {

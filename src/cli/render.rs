@@ -6,7 +6,7 @@ use std::{
     time::Instant,
 };
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 
 use super::{
     Failure,
@@ -37,7 +37,7 @@ pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let frame = Frame { time: args.time, index: 0, seed: args.seed, camera: None };
     let experiment = Experiment { frame, warmup: args.warmup, repeat: args.repeat };
     let (renderer, measured, startup_ms) = measure(&gpu, &job, planned, &experiment, (started, &stop))?;
-    let provenance = Provenance::new(&job, &frame, gpu.info(), arguments(std::env::args_os()));
+    let provenance = Provenance::new(&job, &frame, gpu.info(), arguments(std::env::args_os(), "--out"));
     let attributes = provenance.attributes();
     let report = RenderReport::new(&job, &renderer, &measured, startup_ms, provenance, run);
     for warning in report.warnings() {
@@ -77,15 +77,8 @@ fn measure(
 }
 
 fn check_dumps(names: &[String], plan: &Plan) -> Result<(), Failure> {
-    let known = || plan.images.iter().map(|i| &i.name).chain(plan.buffers.iter().map(|b| &b.name));
-    match names.iter().find(|name| !known().any(|k| k == *name)) {
-        None => Ok(()),
-        Some(name) => {
-            let all: Vec<_> = known().map(String::as_str).collect();
-            let all = all.join(", ");
-            Err(Failure::usage(anyhow!("--dump {name}: the plan has no such image or buffer; it has: {all}")))
-        }
-    }
+    let check = |name: &String| renderer::resource(plan, name).map(drop);
+    names.iter().try_for_each(check).context("--dump").map_err(Failure::usage)
 }
 
 /// What does not fit is said with the options that make it as large as it is.
@@ -116,14 +109,14 @@ fn refuse_messages(gpu: &Gpu) -> Result<(), Failure> {
     }
 }
 
-/// The arguments without the program and without `--out`, which may differ where results do not.
-fn arguments(all: impl Iterator<Item = std::ffi::OsString>) -> Vec<String> {
+/// The arguments without the program and without where it writes to, which may differ where results do not.
+pub(super) fn arguments(all: impl Iterator<Item = std::ffi::OsString>, out: &str) -> Vec<String> {
     let mut kept = Vec::new();
     let mut all = all.skip(1).map(|argument| argument.to_string_lossy().into_owned());
     while let Some(argument) = all.next() {
-        if argument == "--out" {
+        if argument == out {
             all.next();
-        } else if !argument.starts_with("--out=") {
+        } else if !argument.starts_with(&format!("{out}=")) {
             kept.push(argument);
         }
     }
@@ -136,7 +129,7 @@ mod tests {
 
     #[test]
     fn arguments_do_not_name_the_output() {
-        let given = |line: &str| arguments(line.split(' ').map(Into::into));
+        let given = |line: &str| arguments(line.split(' ').map(Into::into), "--out");
         assert_eq!(given("nephroid render null --out a --seed 1"), ["render", "null", "--seed", "1"]);
         assert_eq!(given("nephroid render --out=a null"), ["render", "null"]);
     }

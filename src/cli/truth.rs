@@ -10,7 +10,7 @@ use std::{
 
 use anyhow::anyhow;
 use clap::Args;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use super::{
     Failure,
@@ -20,7 +20,7 @@ use super::{
     signals,
 };
 use crate::{
-    image::Layers,
+    image::{Layers, Provenance},
     lab::{LabError, SUMS, Sparing, TRUTHS},
     scene::{Camera, PathClass, Scene},
     store::{Key, Store},
@@ -90,46 +90,51 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     }
     let (Some(scene), Some(out)) = (&args.scene, &args.out) else { return Ok(()) };
     let scene = Scene::load(scene, &args.set)?;
-    let camera = camera(&scene, &args.camera)?;
+    let camera = scene.camera(&args.camera)?;
     let noise = args.until.or(args.photons.is_none().then_some(DEFAULT_NOISE));
     let goal = Goal { photons: args.photons, noise };
     let paths = args.paths.unwrap_or(scene.paths);
     let (estimator, camera_name) = (args.estimator, args.camera.clone());
     let task = Task { estimator, paths, camera: camera_name, size: args.size, seed: args.seed, goal };
-    let key = task.key(&scene);
-    if let Some(bytes) = store.get(TRUTHS, &key) {
+    if out.is_dir() {
+        return Err(Failure::usage(anyhow!("-o {}: a folder; name a file in it", out.display())));
+    }
+    if let Some(bytes) = store.get(TRUTHS, &task.key(&scene)) {
         write_whole(out, |file| file.write_all(&bytes))?;
         say(&format!("written: {}, made before", out.display()));
         return Ok(());
     }
-    make(args, (&scene, camera, &task), Partial { file: partial(out), key }, &store, out)
-}
-
-fn camera<'a>(scene: &'a Scene, name: &str) -> Result<&'a Camera, Failure> {
-    let known = || scene.cameras.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-    scene.cameras.get(name).ok_or_else(|| Failure::usage(anyhow!("--camera {name}: the scene has: {}", known())))
+    let partial = Partial { file: partial(out), key: task.sums_key(&scene) };
+    let before = partial.before(args.resume)?;
+    make(args, (&scene, camera, &task), &partial, before, (&store, out))
 }
 
 fn make(
     args: &TruthArgs,
     (scene, camera, task): (&Scene, &Camera, &Task),
-    partial: Partial,
-    store: &Store,
-    out: &Path,
+    partial: &Partial,
+    before: Option<Vec<u8>>,
+    (store, out): (&Store, &Path),
 ) -> Result<(), Failure> {
     let (stop, started) = (signals::stop_flag()?, Instant::now());
+    let goes_on = || if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let space = Space::new(scene);
-    let mut run = Run::new(&space, camera, task);
-    if args.resume {
-        say(&partial.read(&mut run));
+    let mut progress = TruthProgress::new(args.max_seconds);
+    let run = Run::watched(&space, camera, task, &mut |share| {
+        progress.direct(share);
+        goes_on()
+    });
+    let mut run = run.ok_or(LabError::Interrupted)?;
+    if let Some(sums) = before {
+        partial.hand(&sums, &mut run)?;
     }
-    let progress = TruthProgress::new(args.max_seconds, run.standing().photons);
+    progress.start(run.standing().photons);
     let (mut failed, mut sparing) = (None, Sparing::default());
     let standing = run.advance(rayon::current_num_threads(), |run, standing| {
         progress.at(&standing);
         let late = args.max_seconds.is_some_and(|most| started.elapsed().as_secs_f64() >= most);
-        let end = standing.finished || late || stop.load(Relaxed);
-        if end || sparing.is_due() {
+        let end = late || stop.load(Relaxed);
+        if !standing.finished && (end || sparing.is_due()) {
             failed = sparing.keep(|| partial.write(run)).err();
         }
         if end || failed.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -143,13 +148,35 @@ fn make(
         return Err(LabError::Interrupted.into());
     }
     let bytes = run.layers()?.to_exr(&run.provenance())?;
+    if standing.finished {
+        // First of all: whatever happens to the file, the work is kept.
+        store.put(TRUTHS, &task.key(scene), &bytes);
+    }
     write_whole(out, |file| file.write_all(&bytes))?;
     if standing.finished {
-        store.put(TRUTHS, &partial.key, &bytes);
         let _ = fs::remove_file(&partial.file); // of no use to anyone now
     }
+    warn(&run.provenance(), &standing);
     say(&summary(&standing, out, started));
     Ok(())
+}
+
+/// Share of the flux that cells may leave as points before it is worth a word.
+const UNRESOLVED: f64 = 0.01;
+
+/// What a user of the file should know.
+fn warn(about: &Provenance, standing: &Standing) {
+    if standing.noise == f64::INFINITY {
+        say("warning: one chunk or grid knows no noise of its own: ask for more photons");
+    }
+    let unresolved = about.get("cells.unresolved").and_then(|share| share.parse::<f64>().ok()).unwrap_or(0.0);
+    if unresolved > UNRESOLVED {
+        let percent = 100.0 * unresolved;
+        say(&format!(
+            "warning: {percent:.1} % of the flux landed as points, in cells that could not be resolved: \
+                      hold this against --estimator photons"
+        ));
+    }
 }
 
 fn summary(standing: &Standing, out: &Path, started: Instant) -> String {
@@ -179,15 +206,39 @@ impl Partial {
         Ok(write_whole(&self.file, |file| file.write_all(sum.as_bytes()).and_then(|()| file.write_all(&sums)))?)
     }
 
-    /// Hands the sums to the run if they are whole and of this task; what happened, in words.
-    fn read(&self, run: &mut Run) -> String {
+    /// What an earlier run left, to go on from. Nothing is ever started over it.
+    fn before(&self, resume: bool) -> Result<Option<Vec<u8>>, Failure> {
         let file = self.file.display();
-        let Ok(bytes) = fs::read(&self.file) else { return format!("{file}: not there; starting anew") };
-        let whole = bytes.split_at_checked(64).filter(|(sum, sums)| self.checksum(sums).as_bytes() == *sum);
-        match whole {
-            Some((_, sums)) if run.resume(sums) => format!("going on after {} photons", run.standing().photons),
-            _ => format!("{file}: damaged, or of another task (scene, class, size, seed, goal); starting anew"),
+        let bytes = match fs::read(&self.file) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                if resume {
+                    say(&format!("{file}: not there; starting anew"));
+                }
+                return Ok(None);
+            }
+            Err(error) => return Err(error.into()),
+        };
+        if !resume {
+            let error = anyhow!("{file} holds what an earlier run has done: go on with --resume, or remove it");
+            return Err(Failure::usage(error));
         }
+        let whole = bytes.split_at_checked(64).filter(|(sum, sums)| self.checksum(sums).as_bytes() == *sum);
+        whole.map(|(_, sums)| Some(sums.to_vec())).ok_or_else(|| self.foreign())
+    }
+
+    /// Hands the sums to the run.
+    fn hand(&self, sums: &[u8], run: &mut Run) -> Result<(), Failure> {
+        if !run.resume(sums) {
+            return Err(self.foreign());
+        }
+        say(&format!("going on after {} photons", run.standing().photons));
+        Ok(())
+    }
+
+    fn foreign(&self) -> Failure {
+        let what = "damaged, or of another task (scene, estimator, class, size, seed, --photons)";
+        Failure::failed(anyhow!("{}: {what}: remove it to start anew, or name another file", self.file.display()))
     }
 
     fn checksum(&self, sums: &[u8]) -> String {

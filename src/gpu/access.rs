@@ -48,6 +48,8 @@ pub enum Access {
     CopyWrite,
     /// Read by the CPU after the fence.
     HostRead,
+    /// Handed to the window system, behind a semaphore.
+    Present,
 }
 
 /// Stages, accesses and image layout of one access.
@@ -111,6 +113,7 @@ impl Access {
             Self::CopyRead => (S::ALL_TRANSFER, A::TRANSFER_READ, L::TRANSFER_SRC_OPTIMAL),
             Self::CopyWrite => (S::ALL_TRANSFER, A::TRANSFER_WRITE, L::TRANSFER_DST_OPTIMAL),
             Self::HostRead => (S::HOST, A::HOST_READ, L::GENERAL),
+            Self::Present => (S::NONE, A::NONE, L::PRESENT_SRC_KHR),
         };
         Scope { stages, access, layout }
     }
@@ -314,6 +317,17 @@ mod tests {
         let b = h.advance(Access::Color, true).unwrap();
         assert_eq!((b.from.layout, b.to.layout), (L::UNDEFINED, L::COLOR_ATTACHMENT_OPTIMAL));
         assert!(History::default().advance(Access::ComputeWrite, false).is_none(), "a fresh buffer waits for nothing");
+    }
+
+    #[test]
+    fn a_window_s_image_is_drawn_anew_and_handed_over() {
+        let anew = barrier(Access::None, Access::Color).unwrap();
+        assert_eq!((anew.from.layout, anew.from.stages), (L::UNDEFINED, S::NONE));
+        for (last, stages) in [(Access::Color, S::COLOR_ATTACHMENT_OUTPUT), (Access::CopyRead, S::ALL_TRANSFER)] {
+            let b = barrier(last, Access::Present).unwrap();
+            assert_eq!((b.from.stages, b.to.layout), (stages, L::PRESENT_SRC_KHR));
+            assert_eq!((b.to.stages, b.to.access), (S::NONE, A::NONE), "the semaphore orders what follows");
+        }
     }
 
     #[test]

@@ -3,7 +3,11 @@
 use ash::vk;
 use std::ffi::CStr;
 
-use super::error::{GpuError, Named};
+use super::{
+    error::{GpuError, Named},
+    loader,
+};
+use crate::names;
 
 /// How a device is asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -63,6 +67,8 @@ pub struct DeviceInfo {
     pub api: String,
     /// Nanoseconds a timestamp tick.
     pub timestamp_period: f32,
+    /// Bits of a timestamp that mean something.
+    pub timestamp_bits: u32,
     /// What it has of the optional features.
     pub features: Vec<Feature>,
     /// What it lacks of the required ones; empty if Nephroid runs here.
@@ -77,8 +83,6 @@ pub struct DeviceInfo {
     pub memory_bytes: u64,
     pub(super) physical: vk::PhysicalDevice,
     pub(super) queue_family: u32,
-    /// Bits of a timestamp that mean something.
-    pub(super) timestamp_bits: u32,
 }
 
 impl DeviceInfo {
@@ -105,7 +109,7 @@ const STORAGE_BUFFERS: u32 = 12;
 /// Every device the loader finds.
 pub fn list_devices() -> Result<Vec<DeviceInfo>, GpuError> {
     let entry = super::device::load()?;
-    let instance = super::device::OwnedInstance::new(&entry, false)?;
+    let instance = super::device::OwnedInstance::new(&entry, false, &[])?;
     inspect(&instance.handle)
 }
 
@@ -208,12 +212,7 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
         kind,
         uuid: ids.device_uuid.iter().map(|b| format!("{b:02x}")).collect(),
         driver: format!("{} {}", text(driver.driver_name_as_c_str()), text(driver.driver_info_as_c_str())),
-        api: format!(
-            "{}.{}.{}",
-            vk::api_version_major(properties.api_version),
-            vk::api_version_minor(properties.api_version),
-            vk::api_version_patch(properties.api_version)
-        ),
+        api: loader::shown(properties.api_version),
         timestamp_period: properties.limits.timestamp_period,
         features: optional,
         missing,
@@ -256,7 +255,9 @@ pub(super) fn choose(devices: Vec<DeviceInfo>, choice: &DeviceChoice) -> Result<
         DeviceChoice::Best => "any".to_owned(),
         DeviceChoice::Named(asked) => asked.clone(),
     };
-    let device = chosen.ok_or(GpuError::NoSuchDevice { asked, present })?;
+    let near =
+        names::guess(&asked, present.split([' ', ',', '(', ')'])).map_or(String::new(), |near| format!("; {near}"));
+    let device = chosen.ok_or(GpuError::NoSuchDevice { asked, present, near })?;
     if device.missing.is_empty() {
         Ok(device)
     } else {

@@ -3,7 +3,7 @@
 use ash::{ext, khr, vk};
 use gpu_allocator::{AllocatorDebugSettings, vulkan as memory};
 use std::{
-    ffi::{CStr, CString},
+    ffi::{CStr, CString, c_char},
     io::Write,
     mem::ManuallyDrop,
     sync::{
@@ -17,9 +17,11 @@ use super::{
     error::{GpuError, Named},
     messages::Messages,
     pipeline::PipelineCache,
+    surface::{self, OnScreen, Surface},
 };
 
-const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
+/// The layer of `--validation`.
+pub(super) const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 /// How to open a device.
 #[derive(Clone, Debug, Default)]
@@ -71,9 +73,11 @@ pub(super) struct Shared {
     pub capture: Option<super::capture::Capture>,
     pub pipelines: PipelineCache,
     allocator: ManuallyDrop<Mutex<memory::Allocator>>,
+    /// The window's, where the device was opened for one.
+    pub surface: Option<Surface>,
     // Declared last, dropped last: everything above lives inside the instance.
     messages: Option<Messages>,
-    _instance: OwnedInstance,
+    pub instance: OwnedInstance,
 }
 
 /// The loader, or how to install it.
@@ -90,7 +94,8 @@ pub(super) struct OwnedInstance {
 }
 
 impl OwnedInstance {
-    pub fn new(entry: &ash::Entry, validation: bool) -> Result<Self, GpuError> {
+    /// `window`: the extensions that a window needs.
+    pub fn new(entry: &ash::Entry, validation: bool, window: &[*const c_char]) -> Result<Self, GpuError> {
         // SAFETY: plain queries of the loader.
         let (layers, extensions) = unsafe {
             (
@@ -103,7 +108,11 @@ impl OwnedInstance {
         }
         let labels = validation || extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME));
         let layer_names = if validation { vec![VALIDATION.as_ptr()] } else { Vec::new() };
-        let extension_names = if labels { vec![ext::debug_utils::NAME.as_ptr()] } else { Vec::new() };
+        surface::check_extensions(window, &extensions)?;
+        let mut extension_names = window.to_vec();
+        if labels {
+            extension_names.push(ext::debug_utils::NAME.as_ptr());
+        }
         let application = vk::ApplicationInfo::default().application_name(c"nephroid").api_version(vk::API_VERSION_1_3);
         let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut synchronisation = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
@@ -133,12 +142,27 @@ impl Drop for OwnedInstance {
 impl Gpu {
     /// Opens a device. Errors name what is missing and how to get it.
     pub fn new(options: &GpuOptions) -> Result<Self, GpuError> {
+        Self::open(options, None)
+    }
+
+    /// Opens a device that can show pictures in the window, which is kept as long as the device is open.
+    pub fn for_window(options: &GpuOptions, window: Arc<dyn OnScreen>) -> Result<Self, GpuError> {
+        Self::open(options, Some(window))
+    }
+
+    fn open(options: &GpuOptions, window: Option<Arc<dyn OnScreen>>) -> Result<Self, GpuError> {
         let capture = options.capture.then(super::capture::Capture::new).transpose()?;
         let entry = load()?;
-        let instance = OwnedInstance::new(&entry, options.validation)?;
+        let extensions = window.as_ref().map(|w| surface::instance_extensions(&**w)).transpose()?.unwrap_or_default();
+        let instance = OwnedInstance::new(&entry, options.validation, extensions)?;
         let messages = options.validation.then(|| Messages::new(&entry, &instance.handle)).transpose()?;
-        let info = choose::choose(choose::inspect(&instance.handle)?, &options.device)?;
-        let device = create_device(&instance.handle, &info)?;
+        let surface = window.map(|window| Surface::new(&entry, &instance, window)).transpose()?;
+        let mut devices = choose::inspect(&instance.handle)?;
+        if let Some(surface) = &surface {
+            devices.iter_mut().try_for_each(|device| surface.require(&instance.handle, device))?;
+        }
+        let info = choose::choose(devices, &options.device)?;
+        let device = create_device(&instance.handle, &info, surface.is_some())?;
         let guard = DeviceGuard(device);
         let device = guard.0.clone();
         // SAFETY: the queue family and its one queue were asked for in `create_device`.
@@ -169,8 +193,9 @@ impl Gpu {
             capture,
             pipelines: PipelineCache::default(),
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            surface,
             messages,
-            _instance: instance,
+            instance,
         })))
     }
 
@@ -220,12 +245,15 @@ impl Drop for DeviceGuard {
     }
 }
 
-fn create_device(instance: &ash::Instance, info: &DeviceInfo) -> Result<ash::Device, GpuError> {
+fn create_device(instance: &ash::Instance, info: &DeviceInfo, shows: bool) -> Result<ash::Device, GpuError> {
     let has = |f| info.features.contains(&f);
     let priorities = [1.0];
     let queues =
         [vk::DeviceQueueCreateInfo::default().queue_family_index(info.queue_family).queue_priorities(&priorities)];
     let mut extensions = vec![khr::push_descriptor::NAME.as_ptr()];
+    if shows {
+        extensions.push(khr::swapchain::NAME.as_ptr());
+    }
     let core = vk::PhysicalDeviceFeatures::default()
         .geometry_shader(has(Feature::GeometryShader))
         .large_points(has(Feature::LargePoints))

@@ -14,12 +14,14 @@ pub enum GpuError {
     )]
     NoDevice,
     /// The asked-for device is not there.
-    #[error("no device matches '{asked}'; present: {present}")]
+    #[error("no device matches '{asked}'; present: {present}{near}")]
     NoSuchDevice {
         /// What the user asked for.
         asked: String,
         /// The devices that are there.
         present: String,
+        /// What was perhaps meant, as a question.
+        near: String,
     },
     /// The device lacks something that every frame needs.
     #[error(
@@ -31,6 +33,9 @@ pub enum GpuError {
         /// What it lacks.
         missing: String,
     },
+    /// A window was asked for and cannot be shown.
+    #[error("no window can be shown: {0}")]
+    NoScreen(String),
     /// A layer that was asked for is not installed.
     #[error("validation layer {0} is not installed (Debian, Ubuntu: vulkan-validationlayers, or run scripts/setup)")]
     NoLayer(String),

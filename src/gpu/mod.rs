@@ -7,9 +7,11 @@
 
 pub mod access;
 mod capture;
+mod chain;
 mod choose;
 mod device;
 mod error;
+mod loader;
 mod memory;
 mod messages;
 mod pipeline;
@@ -17,13 +19,17 @@ mod plan;
 mod program;
 mod record;
 mod reflect;
+mod screen;
 mod shader;
+mod show;
+mod surface;
 mod timer;
 
 pub use access::Access;
 pub use choose::{DeviceChoice, DeviceInfo, Feature, list_devices};
 pub use device::{Calls, Gpu, GpuOptions};
 pub use error::GpuError;
+pub use loader::{LayerInfo, LoaderInfo, inspect_loader, try_validation};
 pub use memory::{Buffer, Format, Image};
 pub use plan::{
     Binding, Blend, BufferDecl, BufferId, Depth, Draw, ImageDecl, ImageId, LeftOut, Lifetime, PassBuilder, PassDecl,
@@ -31,5 +37,8 @@ pub use plan::{
 };
 pub use program::{Program, Reused};
 pub use reflect::{BlockMember, Reflection};
-pub use shader::{ShaderKind, Sources};
+pub use screen::{Look, Screen};
+pub use shader::{ShaderKind, Sources, spirv_version};
+pub use show::SHOW;
+pub use surface::OnScreen;
 pub use timer::{FrameTimes, PassCounters};

@@ -29,7 +29,7 @@ pub(super) struct Pipeline {
 /// The fixed-function state of a raster pipeline.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct RasterState {
-    pub colors: Vec<(Format, Blend)>,
+    pub colors: Vec<(vk::Format, Blend)>,
     pub depth: bool,
     pub topology: Topology,
 }
@@ -219,7 +219,7 @@ impl Shared {
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
-        let formats: Vec<_> = state.colors.iter().map(|(format, _)| format.vk()).collect();
+        let formats: Vec<_> = state.colors.iter().map(|&(format, _)| format).collect();
         let mut rendering = vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
         if state.depth {
             rendering = rendering.depth_attachment_format(Format::Depth32f.vk());

@@ -289,9 +289,14 @@ impl Plan {
         }
     }
 
+    /// An image as it was declared.
+    pub fn image_decl(&self, image: ImageId) -> &ImageDecl {
+        &self.images[image.0]
+    }
+
     /// Width and height of an image.
     pub fn image_extent(&self, image: ImageId) -> [u32; 2] {
-        self.images[image.0].extent
+        self.image_decl(image).extent
     }
 
     /// Bytes of all buffers and images.

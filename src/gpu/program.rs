@@ -147,23 +147,10 @@ impl Program {
     pub(super) fn barriers(
         &self,
         commands: vk::CommandBuffer,
-        mut buffers: Vec<vk::BufferMemoryBarrier2<'_>>,
-        mut images: Vec<vk::ImageMemoryBarrier2<'_>>,
+        buffers: Vec<vk::BufferMemoryBarrier2<'_>>,
+        images: Vec<vk::ImageMemoryBarrier2<'_>>,
     ) {
-        if buffers.is_empty() && images.is_empty() {
-            return;
-        }
-        // A stage that the device lacks may not be named, even beside others.
-        let known = self.shared.known_stages();
-        for b in &mut buffers {
-            (b.src_stage_mask, b.dst_stage_mask) = (b.src_stage_mask & known, b.dst_stage_mask & known);
-        }
-        for b in &mut images {
-            (b.src_stage_mask, b.dst_stage_mask) = (b.src_stage_mask & known, b.dst_stage_mask & known);
-        }
-        let info = vk::DependencyInfo::default().buffer_memory_barriers(&buffers).image_memory_barriers(&images);
-        // SAFETY: recording, outside rendering; handles are live.
-        unsafe { self.shared.device.cmd_pipeline_barrier2(commands, &info) }
+        self.shared.barriers(commands, buffers, images);
     }
 
     /// Runs the passes of a phase: records, submits, and waits for the end. `updates` change small buffers first.
@@ -356,7 +343,7 @@ fn prepare_pass(
     let (files, raster) = match &pass.work {
         Work::Compute { shader, .. } => (std::slice::from_ref(shader), None),
         Work::Raster { shaders, targets, depth, topology, .. } => {
-            let colors = targets.iter().map(|t| (plan.images[t.image.0].format, t.blend)).collect();
+            let colors = targets.iter().map(|t| (plan.images[t.image.0].format.vk(), t.blend)).collect();
             (shaders.as_slice(), Some(RasterState { colors, depth: depth.is_some(), topology: *topology }))
         }
     };

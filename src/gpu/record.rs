@@ -5,6 +5,7 @@ use std::ffi::CString;
 
 use super::{
     access::{Access, Barrier},
+    device::Shared,
     memory::{Buffer, Image},
     pipeline::{Pipeline, descriptor_type},
     plan::{BufferId, Draw, PassDecl, Resource, Target, Work},
@@ -37,6 +38,31 @@ pub(super) fn image_barrier<'a>(b: &Barrier, image: &Image) -> vk::ImageMemoryBa
         .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .image(image.handle)
         .subresource_range(image.range())
+}
+
+impl Shared {
+    /// Records barriers, outside rendering.
+    pub fn barriers(
+        &self,
+        commands: vk::CommandBuffer,
+        mut buffers: Vec<vk::BufferMemoryBarrier2<'_>>,
+        mut images: Vec<vk::ImageMemoryBarrier2<'_>>,
+    ) {
+        if buffers.is_empty() && images.is_empty() {
+            return;
+        }
+        // A stage that the device lacks may not be named, even beside others.
+        let known = self.known_stages();
+        for b in &mut buffers {
+            (b.src_stage_mask, b.dst_stage_mask) = (b.src_stage_mask & known, b.dst_stage_mask & known);
+        }
+        for b in &mut images {
+            (b.src_stage_mask, b.dst_stage_mask) = (b.src_stage_mask & known, b.dst_stage_mask & known);
+        }
+        let info = vk::DependencyInfo::default().buffer_memory_barriers(&buffers).image_memory_barriers(&images);
+        // SAFETY: recording, outside rendering; handles are live.
+        unsafe { self.device.cmd_pipeline_barrier2(commands, &info) }
+    }
 }
 
 /// Writes small buffers from the command stream, before the first pass.

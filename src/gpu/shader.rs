@@ -91,6 +91,13 @@ impl Sources {
         Ok(words)
     }
 
+    /// Compiles a shader that does nothing: whether the compiler is there and whole.
+    pub fn try_compiler() -> Result<(), GpuError> {
+        let mut sources = Self::default();
+        sources.replace("nothing.comp", "#version 460\nvoid main() {}\n");
+        sources.compile("nothing.comp", &[], &[], &Store::none()).map(drop)
+    }
+
     fn translate(
         &self,
         file: &str,
@@ -127,6 +134,12 @@ impl Sources {
         }
         Key::of(inputs)
     }
+}
+
+/// The version of SPIR-V that the compiler writes.
+pub fn spirv_version() -> String {
+    let (version, _) = shaderc::get_spirv_version();
+    format!("{}.{}", version >> 16, version >> 8 & 0xff)
 }
 
 fn embedded<'d>(folder: &'d Dir<'_>, inputs: &mut Vec<&'d [u8]>) {

@@ -3,7 +3,7 @@
 use super::{CompareError, Picture, compare_warnings::warnings};
 use crate::{
     image::Layer,
-    metrics::{self, Measure, PIXELS_PER_DEGREE, Pair, Pictures, RELATIVE_TO_E0, RELATIVE_TO_MEAN, Seen},
+    metrics::{self, Correlation, Measure, PIXELS_PER_DEGREE, Pair, Pictures, RELATIVE_TO_E0, RELATIVE_TO_MEAN, Seen},
 };
 
 /// The least share of the region that has to be judged.
@@ -78,7 +78,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
         layer: layer.to_owned(),
         pixels: sides.pixels,
         masked: sides.judged.len() - sides.pixels,
-        measures: measures(&sides.pair(), constants.e0, flip.measure),
+        measures: intervals(reference, measures(&sides.pair(), constants.e0, flip.measure)),
         constants,
         warnings: warnings(image, reference, &sides),
         maps: Maps { size: image.size(), signed: signed(sides.x, sides.r), flip: flip.map, judged: sides.judged },
@@ -97,6 +97,7 @@ pub(super) struct Sides<'p> {
     pub r: &'p Layer,
     /// Of `r`, where it is known.
     pub variance: Option<&'p Layer>,
+    pub correlation: Correlation,
     pub judged: Vec<bool>,
     /// How many are judged.
     pub pixels: usize,
@@ -117,13 +118,15 @@ impl<'p> Sides<'p> {
             let masked = judged.len() - pixels;
             return Err(CompareError::Masked { image: image.file.clone(), masked, pixels: judged.len() });
         }
-        Ok(Self { x, r, variance, judged, pixels })
+        let correlation = reference.correlation(layer);
+        Ok(Self { x, r, variance, correlation, judged, pixels })
     }
 
     fn pair(&self) -> Pair {
         let [x, r] = [self.x, self.r].map(|layer| kept(layer, &self.judged));
         Pair::new(self.x.channels(), x, r, self.variance.map(|v| kept(v, &self.judged)))
             .expect("layers of one size and as many channels, checked when they were put together")
+            .correlated(self.correlation)
     }
 }
 
@@ -167,6 +170,12 @@ fn measures(pair: &Pair, e0: f64, flip: Measure) -> [Measure; 8] {
         metrics::energy_ratio(pair),
         flip,
     ]
+}
+
+/// Cells of light have no noise: what stands for their variance says how far they may be off, and bounds no interval.
+fn intervals(reference: &Picture, measures: [Measure; 8]) -> [Measure; 8] {
+    let cells = reference.about.get("estimator").is_some_and(|estimator| estimator == "cells");
+    if cells { measures.map(Measure::without_interval) } else { measures }
 }
 
 /// The pixels judged, in float64.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::compare::LEAST_JUDGED;
-use crate::{image::ImageError, scene::SceneError};
+use crate::{image::ImageError, names::NoSuch, scene::SceneError};
 
 /// Why two pictures cannot be compared.
 #[derive(Debug, thiserror::Error)]
@@ -19,8 +19,8 @@ pub enum CompareError {
         shown(reference_size)
     )]
     Size { image: String, image_size: [usize; 2], reference: String, reference_size: [usize; 2] },
-    #[error("{file} has no layer `{layer}`; it has: {known}")]
-    Layer { file: String, layer: String, known: String },
+    #[error("{file}: {reason}")]
+    Layer { file: String, reason: NoSuch },
     #[error("{file}: layer `{layer}` has {found} channels, where {expected} are needed")]
     Channels { file: String, layer: String, found: usize, expected: usize },
     #[error(

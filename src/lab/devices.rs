@@ -60,10 +60,10 @@ struct Device {
 
 /// Whether a method runs on a device, and what it lacks there.
 #[derive(Debug, Serialize)]
-struct MethodOn {
-    name: &'static str,
-    runs: bool,
-    lacks: Vec<&'static str>,
+pub(super) struct MethodOn {
+    pub name: &'static str,
+    pub runs: bool,
+    pub lacks: Vec<&'static str>,
 }
 
 impl DevicesReport {
@@ -81,7 +81,7 @@ impl DevicesReport {
 }
 
 impl MethodOn {
-    fn new(method: &dyn methods::Method, info: &DeviceInfo) -> Self {
+    pub fn new(method: &dyn methods::Method, info: &DeviceInfo) -> Self {
         let lacks = renderer::lacks(method, &info.features);
         Self { name: method.name(), runs: lacks.is_empty() && info.missing.is_empty(), lacks }
     }

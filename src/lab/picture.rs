@@ -3,7 +3,11 @@
 use std::path::Path;
 
 use super::CompareError;
-use crate::image::{Layer, Layers, Provenance};
+use crate::{
+    image::{Layer, Layers, Provenance},
+    metrics::Correlation,
+    names::NoSuch,
+};
 
 /// The camera that sees the region and nothing else.
 pub(super) const REGION: &str = "region";
@@ -32,8 +36,7 @@ impl Picture {
     pub(super) fn layer(&self, name: &str) -> Result<&Layer, CompareError> {
         self.layers.get(name).ok_or_else(|| CompareError::Layer {
             file: self.file.clone(),
-            layer: name.to_owned(),
-            known: self.layers.iter().map(Layer::name).collect::<Vec<_>>().join(", "),
+            reason: NoSuch::new("layer", name, self.layers.iter().map(Layer::name)),
         })
     }
 
@@ -49,6 +52,16 @@ impl Picture {
     pub(super) fn variance(&self, layer: &str) -> Option<&Layer> {
         let variance = self.layers.get(&format!("{layer}.variance"))?;
         (!variance.data().contains(&f32::INFINITY)).then_some(variance)
+    }
+
+    /// How the errors of a layer move together, as the truth says of the caustic's.
+    pub(super) fn correlation(&self, layer: &str) -> Correlation {
+        match layer {
+            "irradiance.caustic" => {
+                Correlation { freedom: self.number("noise.freedom"), total: self.number("noise.total") }
+            }
+            _ => Correlation::default(),
+        }
     }
 
     /// Whether each pixel may be judged: no part of it is masked.

@@ -151,7 +151,7 @@ fn flatten(prefix: &str, values: &Map<String, Value>, into: &mut image::Provenan
     }
 }
 
-fn cpu() -> String {
+pub(super) fn cpu() -> String {
     let system = System::new_with_specifics(RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing()));
     let known = system.ok().and_then(|s| Some((s.cpus().first()?.brand().trim().to_owned(), s.cpus().len())));
     match known {
@@ -160,7 +160,7 @@ fn cpu() -> String {
     }
 }
 
-fn os() -> String {
+pub(super) fn os() -> String {
     let unknown = || std::env::consts::OS.to_owned();
     let name = System::long_os_version().unwrap_or_else(|_| unknown());
     let kernel = System::kernel_long_version().unwrap_or_default();

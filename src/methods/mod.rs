@@ -8,6 +8,7 @@ use glam::DVec2;
 
 use crate::{
     gpu::{Feature, ImageId, Plan, Resource},
+    names::NoSuch,
     passes::{
         PlanError,
         eye::SurfaceProvider,
@@ -102,6 +103,10 @@ pub trait Method: Sync {
 pub static ALL: &[&dyn Method] = &[&maps::Maps];
 
 /// The method of that name.
-pub fn find(name: &str) -> Option<&'static dyn Method> {
-    ALL.iter().copied().find(|m| m.name() == name)
+///
+/// # Errors
+/// Names the ones near it, or all; `none` is one of them, for the user who wants none.
+pub fn find(name: &str) -> Result<&'static dyn Method, NoSuch> {
+    let known = || ALL.iter().map(|m| m.name()).chain(["none"]);
+    ALL.iter().copied().find(|m| m.name() == name).ok_or_else(|| NoSuch::new("method", name, known()))
 }

@@ -33,7 +33,8 @@ pub fn energy_ratio(pair: &Pair) -> Measure {
     }
     let value = if image == reference { 1.0 } else { image / reference };
     // Both empty: nothing was lost, and nothing is known to a share of nothing.
-    let error = if variance == 0.0 { 0.0 } else { variance.sqrt() / reference.abs() };
+    let alone = if variance == 0.0 { 0.0 } else { variance.sqrt() / reference.abs() };
+    let error = pair.total_error().unwrap_or(alone);
     let known = |bound: f64| pair.has_variance().then_some(bound);
     let spread = NORMAL_95 * error * value.abs();
     Measure { value, low: known(value - spread), high: known(value + spread), truth_noise: known(error), perfect: 1.0 }
@@ -58,7 +59,10 @@ fn measure(pair: &Pair, weight: impl Fn(f64) -> f64) -> Measure {
         variance += deviation * deviation;
     }
     let count = (pair.pixels() * pair.channels()) as f64;
-    let (value, noise, spread) = (sum / count, noise / count, NORMAL_95 * variance.sqrt() / count);
+    let (value, noise) = (sum / count, noise / count);
+    // Of |η| the relative variance is π/2 − 1 where that of η² is 2.
+    let common = (0.5 * std::f64::consts::PI - 1.0) / 2.0 * pair.common_scatter() * noise * noise;
+    let spread = NORMAL_95 * (variance / (count * count) + common).sqrt();
     let known = |bound: f64| pair.has_variance().then_some(bound.max(0.0));
     Measure {
         value,

@@ -20,8 +20,9 @@
 //! What is known of the truth is r = t + η with Var η = v, the variance layer. [`Measure::value`] is the plain figure
 //! against r. [`Measure::low`] to [`Measure::high`] hold the figure against the noiseless t with at least 95 %
 //! confidence; for squared measures the noise adds to the plain figure, and the interval lies below it.
-//! [`Measure::truth_noise`] is what t itself would score. Pixels are independent, the bands of one pixel move together
-//! (a photon lights all three).
+//! [`Measure::truth_noise`] is what t itself would score. The bands of one pixel move together (a photon lights all three).
+//! Pixels are independent unless the reference says how far they are not ([`Correlation`]): the error of low-discrepancy
+//! photons is a function of few random numbers, and its mean square scatters as if there were some tens of pixels.
 //!
 //! The squared measures are expanded to second order in η: where √v is a tenth of √(r² + ε) the noise is stated 6 % too
 //! low, and the interval holds with 91 to 92 %. Not modelled: the scatter of v itself. Where few photons make a pixel
@@ -36,7 +37,7 @@ mod squared;
 pub use absolute::{energy_ratio, mae, mape};
 pub use bare::bare_irradiance;
 pub use flip::{Flip, PIXELS_PER_DEGREE, Pictures, Seen, flip, flip_map, magma};
-pub use pair::Pair;
+pub use pair::{Correlation, Pair};
 pub use squared::{RELATIVE_TO_E0, relmse, relmse_standard, relmse_trimmed, rmse};
 
 /// ε of the standard relative squared error, relative to the squared mean; of the absolute one, to the mean.
@@ -64,6 +65,11 @@ pub struct Measure {
 }
 
 impl Measure {
+    /// Without an interval: what stands for the variance is no noise that could be averaged.
+    pub fn without_interval(self) -> Self {
+        Self { low: None, high: None, ..self }
+    }
+
     /// What was measured is no number: worse than anything.
     fn infinite(perfect: f64, noisy: bool) -> Self {
         let bound = noisy.then_some(f64::INFINITY);

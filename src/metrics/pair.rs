@@ -7,6 +7,16 @@ pub struct Pair {
     image: Vec<f64>,
     reference: Vec<f64>,
     variance: Option<Vec<f64>>,
+    correlation: Correlation,
+}
+
+/// How the errors of a reference move together, as far as that is known; without it, pixel by pixel on their own.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Correlation {
+    /// As how many independent values the mean of the squared errors scatters.
+    pub freedom: Option<f64>,
+    /// Standard error of the reference's total, relative to it.
+    pub total: Option<f64>,
 }
 
 /// One value of a pixel.
@@ -26,7 +36,28 @@ impl Pair {
     pub fn new(channels: usize, image: Vec<f64>, reference: Vec<f64>, variance: Option<Vec<f64>>) -> Option<Self> {
         let len = image.len();
         let alike = reference.len() == len && variance.as_ref().is_none_or(|v| v.len() == len);
-        (alike && channels > 0 && len.is_multiple_of(channels)).then_some(Self { channels, image, reference, variance })
+        (alike && channels > 0 && len.is_multiple_of(channels)).then_some(Self {
+            channels,
+            image,
+            reference,
+            variance,
+            correlation: Correlation::default(),
+        })
+    }
+
+    /// With what is known of how the reference's errors move together.
+    pub fn correlated(self, correlation: Correlation) -> Self {
+        Self { correlation, ..self }
+    }
+
+    /// Relative variance of a mean of squared errors beyond that of independent pixels: of a normal error's square it is 2.
+    pub(super) fn common_scatter(&self) -> f64 {
+        self.correlation.freedom.map_or(0.0, |freedom| 2.0 / freedom)
+    }
+
+    /// Relative standard error of the reference's total, if it is known.
+    pub(super) fn total_error(&self) -> Option<f64> {
+        self.correlation.total
     }
 
     /// How many pixels are judged.

@@ -87,7 +87,8 @@ fn measure(pair: &Pair, term: impl Fn(f64, f64) -> Term, trimmed: f64) -> Measur
     let count = shares.len() as f64;
     let mean = |of: fn(&Share) -> f64| shares.iter().map(of).sum::<f64>() / count;
     let (value, raised) = (mean(|s| s.value), mean(|s| s.raised));
-    let spread = NORMAL_95 * (mean(|s| s.deviation * s.deviation) / count).sqrt();
+    let common = pair.common_scatter() * raised * raised;
+    let spread = NORMAL_95 * (mean(|s| s.deviation * s.deviation) / count + common).sqrt();
     let known = |bound: f64| pair.has_variance().then_some(bound.max(0.0));
     Measure {
         value,

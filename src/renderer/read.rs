@@ -2,8 +2,9 @@
 
 use super::{RenderError, Renderer};
 use crate::{
-    gpu::{Format, ImageId, Resource},
+    gpu::{ImageId, Plan, Resource},
     image::Layers,
+    names::NoSuch,
     passes::account::Account,
 };
 
@@ -65,14 +66,13 @@ impl Renderer {
 
     /// Any image or buffer by the name that the plan prints.
     pub fn dump(&self, name: &str) -> Result<Dump, RenderError> {
-        match self.plan().find(name) {
-            Some(Resource::Buffer(buffer)) => {
+        match resource(self.plan(), name)? {
+            Resource::Buffer(buffer) => {
                 let bytes = self.program.read_buffer(buffer)?;
                 Ok(Dump::Buffer(bytemuck::pod_collect_to_vec(&bytes)))
             }
-            Some(Resource::Image(image)) => {
-                let decl = self.plan().images.iter().find(|i| i.name == name).cloned();
-                let Some(decl) = decl else { return Err(self.unknown(name)) };
+            Resource::Image(image) => {
+                let decl = self.plan().image_decl(image);
                 let texels = self.program.read_image(image)?;
                 let each = texels.len() / decl.layers.max(1) as usize;
                 Ok(Dump::Image {
@@ -81,7 +81,6 @@ impl Renderer {
                     layers: texels.chunks_exact(each.max(1)).map(<[f32]>::to_vec).collect(),
                 })
             }
-            None => Err(self.unknown(name)),
         }
     }
 
@@ -106,11 +105,14 @@ impl Renderer {
     fn plan_extent(&self, image: ImageId) -> [u32; 2] {
         self.plan().image_extent(image)
     }
+}
 
-    fn unknown(&self, name: &str) -> RenderError {
-        let plan = self.plan();
-        let images = plan.images.iter().filter(|i| i.format != Format::Depth32f).map(|i| i.name.clone());
-        let known = images.chain(plan.buffers.iter().map(|b| b.name.clone())).collect::<Vec<_>>().join(", ");
-        RenderError::Unknown { name: name.to_owned(), known }
-    }
+/// The image or buffer of that name in a plan.
+///
+/// # Errors
+/// Names the ones near it, or all.
+pub fn resource(plan: &Plan, name: &str) -> Result<Resource, RenderError> {
+    let known = || plan.images.iter().map(|i| &i.name).chain(plan.buffers.iter().map(|b| &b.name));
+    let unknown = || NoSuch::new("image or buffer", name, known().map(String::as_str));
+    Ok(plan.find(name).ok_or_else(unknown)?)
 }

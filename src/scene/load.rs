@@ -12,11 +12,12 @@ use toml::{
 
 use super::{
     Scene, Source, build,
-    error::{Place, SceneError, near},
+    error::{Place, SceneError},
     file::{SceneFile, VERSION},
     locate::{Key, Locator, place_in},
     overrides, shipped,
 };
+use crate::names::near;
 
 /// A scene's text, and the files it may name.
 struct Found {
@@ -94,7 +95,7 @@ fn read_text(file: &str, path: &Path) -> Result<String, SceneError> {
 }
 
 /// Reads a regular file: a folder or a device is refused before it can hang or fill memory.
-fn read(path: &Path) -> Result<Vec<u8>, String> {
+pub fn read(path: &Path) -> Result<Vec<u8>, String> {
     let kind = fs::metadata(path).map_err(|error| error.to_string())?;
     match () {
         () if kind.is_dir() => Err("a folder".to_owned()),

@@ -6,7 +6,8 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use super::error::{Place, SceneError, near};
+use super::error::{Place, SceneError};
+use crate::names::near;
 
 /// The scene as text and tree. A span beyond the text's end names an override: `text.len() + 1 + index`.
 pub struct Locator<'a> {

@@ -23,6 +23,7 @@ mod locate;
 mod measure;
 mod medium;
 mod mesh;
+mod models;
 mod obj;
 mod object;
 mod overrides;
@@ -31,10 +32,13 @@ mod shape_files;
 mod shipped;
 mod sine;
 
+use crate::names::NoSuch;
+
 pub use canonical::{Canonical, WHOLE};
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
 pub use light::{Beam, Light, LightKind};
+pub use models::Models;
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.
 #[derive(Clone, Debug)]
@@ -173,7 +177,7 @@ impl Shape {
 /// A triangle mesh in its own units. Every vertex belongs to a triangle.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// As the scene names it.
+    /// As the scene names it: a path, or `model:NAME` of the [`Models`] folder.
     pub file: String,
     /// In the file's own units.
     pub positions: Vec<Vec3>,
@@ -290,6 +294,15 @@ impl Scene {
     /// Name and title of every scene inside the program, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
+    }
+
+    /// The camera of that name.
+    ///
+    /// # Errors
+    /// Names the ones near it, or all.
+    pub fn camera(&self, name: &str) -> Result<&Camera, NoSuch> {
+        let known = || self.cameras.keys().map(String::as_str);
+        self.cameras.get(name).ok_or_else(|| NoSuch::new("camera", name, known()))
     }
 
     /// Whether anything bends the bands apart; only then are they traced apart.

@@ -4,12 +4,12 @@ use std::{collections::BTreeMap, sync::Arc};
 use glam::{DAffine3, DVec3};
 
 use super::{
-    Material, Mesh, Object, Shape,
+    Material, Mesh, Models, Object, Shape,
     error::SceneError,
     file::{Floats, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile},
     load::Files,
     locate::Key,
-    obj, shape_files,
+    models, obj, shape_files,
 };
 
 /// Cosine between a quad's edges that passes for a right angle: the rounding of decimal numbers in a file.
@@ -118,9 +118,7 @@ impl<'a> Meshes<'a> {
         if let Some(mesh) = self.read.get(file) {
             return Ok(mesh.clone());
         }
-        let remedy = "mesh paths are relative to the scene file";
-        let unreadable = |why: String| key.fault("a readable OBJ file", format!("{file}: {why}"), remedy);
-        let bytes = self.files.read(file).map_err(unreadable)?;
+        let bytes = self.bytes(key, file)?;
         self.hasher.update(&bytes);
         let mesh = Arc::new(obj::parse(file, &bytes).map_err(|fault| {
             let line = if fault.line == 0 { String::new() } else { format!(":{}", fault.line) };
@@ -128,5 +126,14 @@ impl<'a> Meshes<'a> {
         })?);
         self.read.insert(file.to_owned(), mesh.clone());
         Ok(mesh)
+    }
+
+    fn bytes(&self, key: &Key, file: &str) -> Result<Vec<u8>, SceneError> {
+        if let Some(name) = file.strip_prefix(models::PREFIX) {
+            return Models::open().read(name).map_err(|fault| key.fault(fault.expected, fault.found, fault.remedy));
+        }
+        let remedy = "mesh paths are relative to the scene file; model:NAME names one of the models folder";
+        let unreadable = |why: String| key.fault("a readable OBJ file", format!("{file}: {why}"), remedy);
+        self.files.read(file).map_err(unreadable)
     }
 }

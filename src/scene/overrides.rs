@@ -7,10 +7,11 @@ use toml::{
 };
 
 use super::{
-    error::{Place, SceneError, near},
+    error::{Place, SceneError},
     format::{KINDS, keys},
     locate::{Locator, respan, respanned},
 };
+use crate::names::near;
 
 /// What the check of reserved keys has more to say of than that they are unknown.
 const RESERVED: [&[&str]; 2] = [&["medium"], &["cameras", "region"]];

@@ -7,12 +7,13 @@
 //! The cache is never needed: where no folder can be written, everything is made anew, and that is said once.
 
 mod entry;
-mod place;
 
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Once;
+
+use crate::places::Folder;
 
 /// What an entry was made from, as a hash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,7 +74,7 @@ impl Store {
     /// The user's cache: `NEPHROID_CACHE`, else `XDG_CACHE_HOME/nephroid`, else `~/.cache/nephroid`, the first that can
     /// be written to. If none can, a store that keeps nothing; standard error says so, once a process.
     pub fn open() -> Self {
-        let folder = place::candidates(|name| std::env::var_os(name)).into_iter().find(|f| is_writable(f));
+        let folder = Folder::Cache.candidates().into_iter().find(|f| is_writable(f));
         if folder.is_none() {
             warn_once("no cache folder can be written to");
         }
@@ -107,6 +108,15 @@ impl Store {
         if let Err(error) = replace(&folder, &key.to_string(), &entry::seal(kind, key, content)) {
             warn_once(&format!("cannot write to the cache {}: {error}", folder.display()));
         }
+    }
+
+    /// Every kind of which there are entries, or were.
+    pub fn kinds(&self) -> Vec<String> {
+        let folders = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+        let kind = |entry: fs::DirEntry| entry.file_name().into_string().ok().filter(|_| entry.path().is_dir());
+        let mut kinds: Vec<_> = folders.filter_map(kind).filter(|kind| self.kind_folder(kind).is_some()).collect();
+        kinds.sort();
+        kinds
     }
 
     /// All entries of a kind, by key; whether each is whole, [`Store::get`] finds out.

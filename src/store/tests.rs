@@ -23,6 +23,7 @@ fn what_was_put_comes_back_until_replaced_or_cleared() {
     store.put("spirv", &a, b"two, longer");
     assert_eq!(store.get("spirv", &a).unwrap(), b"two, longer");
 
+    assert_eq!((store.kinds(), Store::none().kinds()), (vec!["spirv".to_owned(), "truth".to_owned()], vec![]));
     let listed: Vec<Key> = store.list("spirv").iter().map(|entry| entry.key).collect();
     assert_eq!(listed.len(), 2);
     assert!(listed.contains(&a) && listed.contains(&b));

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::ops::ControlFlow;
 
 use super::{
     estimate::Sums,
@@ -64,17 +65,28 @@ pub struct Direct {
     pub mask: Vec<f64>,
 }
 
-/// Samples every pixel; the same bits for any number of threads.
-pub fn direct(space: &Space, eye: &Eye, seed: u64) -> Direct {
+/// Pixels between two looks at whether to go on.
+const BLOCK: usize = 1 << 14;
+
+/// Samples every pixel; the same bits for any number of threads. `watch` is told the share that is done; `None` if it breaks
+/// off.
+pub fn direct(space: &Space, eye: &Eye, seed: u64, watch: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Option<Direct> {
     let lamps = lamps(space);
     let sample = |pixel| sample(space, &lamps, eye, seed, pixel);
-    let pixels: Vec<_> = (0..eye.pixels()).into_par_iter().map(sample).collect();
+    let mut pixels: Vec<([DVec3; PICTURES as usize], f64)> = Vec::with_capacity(eye.pixels());
+    while pixels.len() < eye.pixels() {
+        let block = pixels.len()..(pixels.len() + BLOCK).min(eye.pixels());
+        pixels.par_extend(block.into_par_iter().map(sample));
+        if watch(pixels.len() as f64 / eye.pixels() as f64).is_break() {
+            return None;
+        }
+    }
     let mut sums = Sums::new(eye.pixels());
     for k in 0..PICTURES as usize {
         let picture: Vec<f64> = pixels.iter().flat_map(|(e, _)| e[k].to_array()).collect();
         sums.add(&picture);
     }
-    Direct { sums, mask: pixels.iter().map(|(_, masked)| *masked).collect() }
+    Some(Direct { sums, mask: pixels.iter().map(|(_, masked)| *masked).collect() })
 }
 
 fn sample(space: &Space, lamps: &[Lamp], eye: &Eye, seed: u64, pixel: usize) -> ([DVec3; PICTURES as usize], f64) {
@@ -130,7 +142,8 @@ mod tests {
         let scene = Scene::load(file.to_str().unwrap(), &[]).unwrap();
         let (space, size) = (Space::new(&scene), 65);
         let eye = Eye::new(&scene.cameras["region"], [size; 2]);
-        let layer: Vec<f64> = direct(&space, &eye, 1).sums.mean().collect();
+        let layer: Vec<f64> =
+            direct(&space, &eye, 1, &mut |_| ControlFlow::Continue(())).unwrap().sums.mean().collect();
         let middle = (size * size / 2) as usize * 3;
         for (band, absorption) in [0.0, 0.5, 2.0].into_iter().enumerate() {
             let exact = 3.0 / 0.64 * f64::exp(-0.8 * absorption);

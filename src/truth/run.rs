@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use super::{
     direct::{Direct, direct, judged},
-    estimate::{BANDS, CHUNKS, Cells, Counts, Estimate, Estimator, Judged},
+    estimate::{BANDS, CHUNKS, Cells, Counts, Estimate, Estimator, Judged, PARTS},
     eye::Eye,
     light::Photons,
     trace::Space,
@@ -18,12 +18,12 @@ use crate::{
 };
 
 /// Raised whenever the same task would give other numbers.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// ε of the judged figure: (this share of E₀)².
 const EPSILON: f64 = 0.1;
 /// Photons of a chunk, at least and at most.
-const PER_CHUNK: [u64; 2] = [1 << 10, 1 << 16];
+const PER_CHUNK: [u64; 2] = [1 << 10, 1 << 18];
 
 /// What decides every bit of a truth.
 #[derive(Clone, Debug)]
@@ -57,6 +57,12 @@ impl Task {
         (self.goal.photons.unwrap_or(u64::MAX) / (2 * CHUNKS)).clamp(PER_CHUNK[0], PER_CHUNK[1])
     }
 
+    /// What the sums of this task are found by, however far they are: another noise asked for leaves them as they are.
+    pub fn sums_key(&self, scene: &Scene) -> Key {
+        let goal = Goal { noise: None, ..self.goal };
+        Task { goal, ..self.clone() }.key(scene)
+    }
+
     /// What a finished truth of this task is found by.
     pub fn key(&self, scene: &Scene) -> Key {
         let Self { estimator, paths, camera, size, seed, goal } = self;
@@ -85,26 +91,36 @@ pub struct Run<'a> {
     space: &'a Space<'a>,
     direct: Direct,
     caustic: Box<dyn Estimate + 'a>,
-    judged: Judged,
     e0: f64,
 }
 
 impl<'a> Run<'a> {
     /// Computes direct light, and sets up the estimate.
     pub fn new(space: &'a Space<'a>, camera: &Camera, task: &'a Task) -> Self {
+        let run = Self::watched(space, camera, task, &mut |_| ControlFlow::Continue(()));
+        run.expect("what nobody breaks off comes to its end")
+    }
+
+    /// As [`Self::new`]; `watch` is told the share of direct light that is done, and may break off: then `None`.
+    pub fn watched(
+        space: &'a Space<'a>,
+        camera: &Camera,
+        task: &'a Task,
+        watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Option<Self> {
         let eye = Eye::new(camera, task.size);
-        let direct = direct(space, &eye, task.seed);
+        let direct = direct(space, &eye, task.seed, watch)?;
         let e0 = bare_irradiance(space.scene);
         let judged = Judged { pixels: judged(space, &eye, &direct.mask), epsilon: (EPSILON * e0).powi(2) };
         let caustic: Box<dyn Estimate + 'a> = match task.estimator {
             Estimator::Photons => {
-                let photons = Photons::new(space, task.paths, task.seed, task.per_chunk());
-                Box::new(Counts::new(space, eye, photons))
+                let photons = Photons::new(space, task.paths, task.seed, task.per_chunk() / PARTS);
+                Box::new(Counts::new(space, eye, photons, judged))
             }
-            Estimator::Cells => Box::new(Cells::new(space, eye, task.paths, &task.goal)),
+            Estimator::Cells => Box::new(Cells::new(space, eye, task.paths, &task.goal, judged)),
         };
         let size = task.size.map(|n| n as usize);
-        Self { task, size, space, direct, caustic, judged, e0 }
+        Some(Self { task, size, space, direct, caustic, e0 })
     }
 
     /// Adds chunks, a group of `width` at a time on all cores, until the goal is met or `watch` breaks off.
@@ -117,11 +133,12 @@ impl<'a> Run<'a> {
             let group: Vec<_> = chunks.into_par_iter().map(|k| self.caustic.chunk(k)).collect();
             for chunk in &group {
                 self.caustic.add(chunk);
-                standing = self.standing();
-                if standing.finished {
+                // Looked at where it may have been met, and not more often: a look goes over all pixels.
+                if self.caustic.may_be_finished(&self.task.goal) && self.standing().finished {
                     break;
                 }
             }
+            standing = self.standing();
             if watch(self, standing).is_break() {
                 break;
             }
@@ -131,7 +148,7 @@ impl<'a> Run<'a> {
 
     /// Where it stands.
     pub fn standing(&self) -> Standing {
-        self.caustic.standing(&self.task.goal, &self.judged)
+        self.caustic.standing(&self.task.goal)
     }
 
     /// Chunks so far.

@@ -9,7 +9,7 @@ const NO_DEVICE: i32 = 4;
 const CASES: &[(&str, i32, &[&str])] = &[
     ("glass-sphere --set light.side=-3", USAGE, &["light.side=-3", "1 to 16384 texels", "default 512"]),
     ("glass-sphere --set light.side=64.5", USAGE, &["light.side=64.5", "1 to 16384 texels"]),
-    ("glass-sphere --set light.sied=64", USAGE, &["light.sied", "no such setting", "near: light.side"]),
+    ("glass-sphere --set light.sied=64", USAGE, &["light.sied", "no such setting", "did you mean `light.side`?"]),
     ("glass-sphere --set nothing.like.it=1", USAGE, &["nothing.like.it", "nephroid methods"]),
     ("glass-sphere --set light.side", USAGE, &["light.side", "KEY=VALUE"]),
     ("glass-sphere --set =3", USAGE, &["=3", "KEY=VALUE"]),
@@ -23,17 +23,18 @@ const CASES: &[(&str, i32, &[&str])] = &[
     ("glass-sphere --size 70000x1", USAGE, &["70000x1", "65536"]),
     ("glass-sphere --size 32768x1", USAGE, &["eye/", "32768x1", "lower --size (now 32768x1)", "eye.samples"]),
     ("glass-sphere --size 4096x1 --set eye.samples=16", USAGE, &["65536x16", "lower --size", "eye.samples (now 16)"]),
-    ("glass-sphere --method map", USAGE, &["--method", "'map'", "no such method", "maps"]),
+    ("glass-sphere --method map", USAGE, &["--method", "'map'", "no method `map`", "did you mean `maps`?"]),
     ("glass-sphere --method maps --surface maps", USAGE, &["--method", "--surface", "cannot be used with"]),
     ("glass-sphere --medium maps", USAGE, &["--medium maps", "does not fill the slot medium", "not built yet"]),
-    ("glass-sphere --camera side", USAGE, &["camera side", "main, region"]),
+    ("glass-sphere --camera side", USAGE, &["no camera `side`", "choose one of `main`, `region`"]),
+    ("glass-sphere --camera regoin", USAGE, &["no camera `regoin`", "did you mean `region`?"]),
     ("glass-sphere --repeat 0", USAGE, &["--repeat", "0"]),
     ("glass-sphere --warmup some", USAGE, &["--warmup", "some"]),
     ("glass-sphere --time NaN", USAGE, &["--time", "NaN", "a number of seconds"]),
     ("glass-sphere --seed 1.5", USAGE, &["--seed", "1.5"]),
     ("glass-sphere --format xml", USAGE, &["--format", "xml", "table, json, csv, md"]),
-    ("glass-sphere --dump maps/nap", USAGE, &["--dump maps/nap", "maps/map", "light/photons.hit"]),
-    ("diffuse --dump maps/map", USAGE, &["--dump maps/map", "eye/radiance"]),
+    ("glass-sphere --dump maps/nap", USAGE, &["--dump", "`maps/nap`", "did you mean `maps/map`?"]),
+    ("diffuse --dump maps/map", USAGE, &["--dump", "`maps/map`", "choose one of", "`eye/radiance`"]),
     ("glass-sphere --bogus", USAGE, &["--bogus"]),
     ("glass-sphere second", USAGE, &["second"]),
     ("glas-sphere", USAGE, &["glas-sphere", "no such scene", "glass-sphere"]),
@@ -41,7 +42,8 @@ const CASES: &[(&str, i32, &[&str])] = &[
     ("src/scene/", USAGE, &["src/scene/", "a folder"]),
     ("glass-sphere --set scene.materials.glass.iro=1.3", USAGE, &["scene.materials.glass.iro", "did you mean", "ior"]),
     ("glass-sphere --set scene.materials.glass.ior=-1", USAGE, &["--set scene.materials.glass.ior=-1", "ior"]),
-    ("glass-sphere --set scene.materials.glass.ior=wet", USAGE, &["--set scene.materials.glass.ior=wet", "a number"]),
+    ("glass-sphere --set scene.materials.glass.ior=wet", USAGE, &["--set scene.materials.glass.ior=wet", "`water`"]),
+    ("glass-sphere --set scene.exposure=bright", USAGE, &["--set scene.exposure=bright", "a number"]),
     ("glass-sphere --set scene.objects.ball.material=[1", USAGE, &["--set scene.objects.ball.material=[1", "TOML"]),
     ("glass-sphere --set scene.objects.ball.material=gold", USAGE, &["gold", "glass", "white"]),
     ("bunny --set scene.objects.bunny.file=none.obj", USAGE, &["none.obj", "No such file"]),
@@ -71,6 +73,16 @@ fn each_is_refused_with_its_name_and_remedy_and_nothing_is_written() {
 }
 
 #[test]
+fn a_device_is_suggested_by_a_word_of_its_name() {
+    let devices = nephroid("devices --format json").ok().json();
+    let name = devices["devices"][0]["name"].as_str().unwrap().to_owned();
+    let word = name.split([' ', ',', '(', ')']).find(|word| word.len() > 4).expect("a word of its name").to_owned();
+    let ran = nephroid(&format!("render null --device {}x --out {}", word, place().1.display()));
+    assert_eq!(ran.code, Some(NO_DEVICE), "{}", ran.err);
+    assert!(ran.err.contains(&format!("did you mean `{word}`?")), "{}", ran.err);
+}
+
+#[test]
 fn a_command_must_be_whole() {
     for (arguments, wanted) in [
         ("", "Usage"),
@@ -78,7 +90,10 @@ fn a_command_must_be_whole() {
         ("render --out x", "<SCENE>"),
         ("render glass-sphere", "--out"),
         ("plan", "<SCENE>"),
-        ("scenes null --format json", "--format"),
+        ("scenes null --source --format json", "--format"),
+        ("scenes --source", "<SCENE>"),
+        ("completions", "<SHELL>"),
+        ("completions basch", "bash"),
     ] {
         let ran = nephroid(arguments);
         assert_eq!(ran.code, Some(USAGE), "{arguments}: {}", ran.err);

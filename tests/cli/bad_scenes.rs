@@ -48,7 +48,7 @@ fn render(scene: &std::path::Path, wanted: &[&str], what: &str) {
 
 #[test]
 fn each_fault_is_found_with_its_line() {
-    let text = nephroid("scenes glass-sphere").ok().out;
+    let text = nephroid("scenes glass-sphere --source").ok().out;
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("faulty.toml");
     for (old, new, mark, wanted) in CASES {
@@ -71,7 +71,7 @@ const MESHES: &[(&str, &[&str])] = &[
 
 #[test]
 fn each_bad_mesh_is_named() {
-    let scene = nephroid("scenes bunny").ok().out.replace("bunny-lo.obj", "faulty.obj");
+    let scene = nephroid("scenes bunny --source").ok().out.replace("bunny-lo.obj", "faulty.obj");
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("mine.toml");
     fs::write(&file, scene).unwrap();

@@ -24,27 +24,6 @@ fn every_list_has_every_format() {
 }
 
 #[test]
-fn scenes_as_csv_begin_with_their_names() {
-    let rows = nephroid("scenes --format csv").ok().rows();
-    assert_eq!(rows[0], ["name", "title"]);
-    let names: Vec<_> = rows[1..].iter().map(|row| row[0].as_str()).collect();
-    for name in ["bunny", "diffuse", "flat-water", "glass-sphere", "null"] {
-        assert!(names.contains(&name), "{names:?}");
-    }
-    assert!(rows[1..].iter().all(|row| !row[1].is_empty()), "a scene without a title");
-}
-
-#[test]
-fn a_scene_is_printed_as_it_can_be_written() {
-    let text = nephroid("scenes glass-sphere").ok().out;
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("mine.toml");
-    std::fs::write(&file, text).unwrap();
-    let plan = nephroid(&format!("plan {} --format json", file.display())).ok().json();
-    assert_eq!(plan["scene"], "mine");
-}
-
-#[test]
 fn methods_list_every_setting_with_unit_default_range_and_meaning() {
     let methods = nephroid("methods --format json").ok().json();
     assert_eq!(column(&methods["methods"], "name"), ["maps"]);

@@ -2,10 +2,13 @@
 
 mod bad_options;
 mod bad_scenes;
+mod doctor;
 mod lists;
+mod models;
 mod no_room;
 mod render;
 mod repeat;
+mod scenes;
 
 use std::{
     path::{Path, PathBuf},

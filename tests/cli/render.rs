@@ -199,7 +199,7 @@ fn an_image_of_several_layers_is_dumped_as_several_files() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("two.toml");
     let second = "\n[lights.lamp.directional]\ndirection = [0.2, -1.0, 0.0]\nirradiance = 0.5\n";
-    std::fs::write(&scene, nephroid("scenes glass-sphere").ok().out + second).unwrap();
+    std::fs::write(&scene, nephroid("scenes glass-sphere --source").ok().out + second).unwrap();
     let (_folder, out, _) = rendered(&format!("{} --set light.view=shared --dump maps/map", scene.display()));
     assert!(names(&out).starts_with(&["image.exr".into(), "image.png".into(), "maps.map.0.exr".into()]));
     assert!(out.join("maps.map.1.exr").is_file());

@@ -252,7 +252,7 @@ fn what_cannot_have_a_truth_is_said_at_once() {
     let dark = with("dark.exr", "e0", Some("none"));
     let (word, _) = judged(&auto(&folder, &[&dark], &["--max-seconds", "0", "--format", "json"]));
     assert!(word.contains("stopped after 0 s"), "{word}"); // the truth knows its E₀
-    fails(&auto(&folder, &[&good], &["--layer", "radiance"]), 1, &["good.exr has no layer `radiance`"]);
+    fails(&auto(&folder, &[&good], &["--layer", "radiance"]), 1, &["good.exr: there is no layer `radiance`"]);
     fails(&auto(&folder, &[&good], &["--max-seconds", "nan"]), 2, &["a number of seconds"]);
     let file = run(&folder, &["compare", &good, "--reference", &good, "--max-seconds", "1"]);
     fails(&file, 2, &["--max-seconds goes with --reference auto"]);

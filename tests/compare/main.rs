@@ -177,6 +177,8 @@ fn thresholds_decide_the_exit_code() {
     for wrong in ["relmse", "relmse=", "relmse=-1", "relmse=nan", "nothing=1"] {
         assert_eq!(code(wrong), Some(2), "{wrong}");
     }
+    let ran = compare(&[&image, "--reference", &reference, "--fail-above", "relsme=0.01"]);
+    assert!(ran.err.contains("no measure `relsme`") && ran.err.contains("did you mean `relmse`?"), "{}", ran.err);
     let ran = compare(&[&reference, &image, "--reference", &reference, "--fail-above", "rmse=0.05"]);
     assert_eq!(ran.code, Some(3));
     assert!(ran.err.contains("rmse") && ran.err.contains("i.exr") && !ran.out.is_empty(), "{}", ran.err);

@@ -17,7 +17,11 @@ fn malformed_files_are_named() {
     fails(&[&place("absent.exr"), "--reference", &good], &["absent.exr", "cannot read"]);
     let small = Picture { side: 19, ..Picture::of(1.0) }.write(&folder, "small.exr");
     fails(&[&small, "--reference", &good], &["small.exr", "19x19", "good.exr", "20x20"]);
-    fails(&[&good, "--reference", &good, "--layer", "medium"], &["good.exr", "`medium`", "irradiance.caustic, mask"]);
+    fails(
+        &[&good, "--reference", &good, "--layer", "medium"],
+        &["good.exr", "`medium`", "`irradiance.caustic`, `mask`"],
+    );
+    fails(&[&good, "--reference", &good, "--layer", "caustic"], &["good.exr", "did you mean `irradiance.caustic`?"]);
     let main = Picture::of(1.0).about("camera", "main").write(&folder, "main.exr");
     fails(&[&main, "--reference", &good], &["main.exr", "--camera region"]);
     let dark = Picture::of(1.0).about("e0", "none").write(&folder, "dark.exr");
@@ -60,7 +64,7 @@ fn layers_of_another_shape_are_named() {
     let bare = with("b.exr", "depth", 1);
     fails(
         &[&good, "--reference", &bare, "--layer", "mask"],
-        &["b.exr has no layer `mask`", "irradiance.caustic, depth"],
+        &["b.exr: there is no layer `mask`", "choose one of `irradiance.caustic`, `depth`"],
     );
 }
 

@@ -33,7 +33,11 @@ impl<'a> Maker<'a> {
         let (task, store) = (self.subject.task(), self.auto.store);
         let key = task.key(&self.subject.scene);
         let space = Space::new(&self.subject.scene);
-        let mut run = Run::new(&space, self.subject.camera(), &task);
+        let subject = self.subject.to_string();
+        let nothing = Standing { photons: 0, noise: f64::INFINITY, missing: f64::INFINITY, finished: false };
+        let mut look = |_| watch(&Making { subject: &subject, standing: nothing });
+        let run = Run::watched(&space, self.subject.camera(), &task, &mut look);
+        let mut run = run.ok_or(LabError::Interrupted)?;
         if let Some(sums) = store.get(SUMS, &key) {
             run.resume(&sums); // of another size they would be left alone
         }

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 /// The time between two times of keeping is at least this many times what keeping takes.
-const SPARING: u32 = 20;
+const SPARING: u32 = 4;
 
 /// Keeps the time spent on keeping small beside the time spent on making.
 #[derive(Debug, Default)]

@@ -9,10 +9,11 @@ mod sums;
 use std::{fmt, str::FromStr};
 
 pub use cells::Cells;
-pub use counts::{CHUNKS, Counts};
+pub use counts::{CHUNKS, Counts, PARTS};
 pub use sums::{BANDS, Sums};
 
 use super::{Goal, Standing};
+use crate::names::NoSuch;
 
 /// Which way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,13 +35,11 @@ impl fmt::Display for Estimator {
 }
 
 impl FromStr for Estimator {
-    type Err = String;
+    type Err = NoSuch;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        [Self::Photons, Self::Cells]
-            .into_iter()
-            .find(|estimator| estimator.to_string() == text)
-            .ok_or_else(|| format!("`{text}` is no estimator: use photons or cells"))
+    fn from_str(text: &str) -> Result<Self, NoSuch> {
+        let found = [Self::Photons, Self::Cells].into_iter().find(|estimator| estimator.to_string() == text);
+        found.ok_or_else(|| NoSuch::new("estimator", text, ["photons", "cells"]))
     }
 }
 
@@ -76,8 +75,11 @@ pub trait Estimate: Send + Sync {
     /// Adds the next chunk.
     fn add(&mut self, chunk: &[f64]);
 
-    /// How far it is from the goal.
-    fn standing(&self, goal: &Goal, judged: &Judged) -> Standing;
+    /// How far it is from the goal: dear, since it looks at every pixel.
+    fn standing(&self, goal: &Goal) -> Standing;
+
+    /// Whether the goal may have been met by the last chunk, whatever the pixels say.
+    fn may_be_finished(&self, goal: &Goal) -> bool;
 
     /// The irradiance.
     fn mean(&self) -> Vec<f64>;

@@ -172,11 +172,13 @@ struct Cone {
 }
 
 impl Held {
-    /// The cone that holds all, seen from a point: every direction from inside of it.
+    /// The cone that holds all, seen from a point. One of a right angle and more is no convex thing, and corners that it
+    /// holds do not vouch for what lies between them: it is then every direction.
     fn cone(&self, apex: DVec3) -> Cone {
         let axis = (self.middle() - apex).try_normalize();
         let lowest = |axis| self.balls.iter().map(|b| lowest_cosine(apex, axis, *b)).fold(1.0, f64::min);
-        let height = ((1.0 - axis.map_or(-1.0, lowest)) * (1.0 + MARGIN)).min(2.0);
+        let height = (1.0 - axis.map_or(-1.0, lowest)) * (1.0 + MARGIN);
+        let height = if height < 1.0 { height } else { 2.0 };
         Cone { axis: axis.unwrap_or(DVec3::Y), height }
     }
 }

@@ -33,6 +33,7 @@ pub struct Cells<'a> {
     eye: Eye,
     class: PathClass,
     lights: Vec<Emission>,
+    judged: Judged,
     /// Cells a side of the first stage.
     start: u64,
     /// Of the stage under way: the irradiance so far, then [`Spent`].
@@ -44,7 +45,7 @@ pub struct Cells<'a> {
 
 impl<'a> Cells<'a> {
     /// Of one path class, as this eye sees it. The first stage is such that doubling leads to the goal's photons.
-    pub fn new(space: &'a Space<'a>, eye: Eye, class: PathClass, goal: &Goal) -> Self {
+    pub fn new(space: &'a Space<'a>, eye: Eye, class: PathClass, goal: &Goal, judged: Judged) -> Self {
         let lights: Vec<_> = Emission::of(space).into_iter().filter(|e| e.flux().max_element() > 0.0).collect();
         let start = match goal.photons {
             None => START,
@@ -57,7 +58,7 @@ impl<'a> Cells<'a> {
             }
         };
         let sum = vec![0.0; eye.pixels() * BANDS + Spent::NUMBERS];
-        Self { space, eye, class, lights, start, sum, stages: [vec![], vec![]], chunks: 0 }
+        Self { space, eye, class, lights, judged, start, sum, stages: [vec![], vec![]], chunks: 0 }
     }
 
     fn side(&self, stage: u64) -> u64 {
@@ -126,20 +127,24 @@ impl Estimate for Cells<'_> {
         }
     }
 
-    fn standing(&self, goal: &Goal, judged: &Judged) -> Standing {
+    fn may_be_finished(&self, _: &Goal) -> bool {
+        self.lights.is_empty() || self.chunks.is_multiple_of(BANDS_A_STAGE)
+    }
+
+    fn standing(&self, goal: &Goal) -> Standing {
         if self.lights.is_empty() {
             return Standing { photons: 0, noise: 0.0, missing: 0.0, finished: true };
         }
         let (stage, between) = (self.chunks / BANDS_A_STAGE, self.chunks % BANDS_A_STAGE);
-        let noise = judged.noise(self.mean().into_iter(), self.variance().into_iter());
+        let noise = self.judged.noise(self.mean().into_iter(), self.variance().into_iter());
         let enough = |stage: u64| {
             let side = self.side(stage - 1);
             let cells = side * side * self.lights.len() as u64;
-            side >= LAST || goal.photons.is_some_and(|n| cells >= n)
+            goal.photons.is_some_and(|n| cells >= n)
         };
         let quiet = stage > 1 && goal.noise.is_some_and(|most| noise <= most);
         let finished = between == 0 && stage > 0 && (enough(stage) || quiet);
-        let last = (stage + 1..).find(|s| enough(*s) || goal.photons.is_none()).unwrap_or(stage + 1);
+        let last = (stage + 1..stage + 32).find(|s| enough(*s)).unwrap_or(stage + 1);
         let missing = (self.cells(last * BANDS_A_STAGE) - self.cells(self.chunks)) as f64;
         Standing { photons: self.cells(self.chunks), noise, missing, finished }
     }

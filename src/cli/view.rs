@@ -1,0 +1,52 @@
+//! `nephroid view`: a job in a window.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{
+    Failure,
+    args::{JobArgs, ListArgs},
+    output::{print, say},
+    render::arguments,
+};
+use crate::{
+    gpu::{DeviceChoice, GpuOptions},
+    lab::{self, Report},
+    renderer,
+    window::{self, Viewing},
+};
+
+#[derive(Args)]
+pub struct ViewArgs {
+    #[command(flatten)]
+    job: JobArgs,
+    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
+    #[arg(long, value_name = "D")]
+    device: Option<String>,
+    /// Close after N timed frames and print the medians of their stages; the first frame of a plan is not timed
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    frames: Option<u32>,
+    /// Write what the window shows in the end, as PNG
+    #[arg(long, value_name = "FILE")]
+    screenshot: Option<PathBuf>,
+    /// Run under the validation layers; any message is a failure, and times mean nothing
+    #[arg(long)]
+    validation: bool,
+    #[command(flatten)]
+    list: ListArgs,
+}
+
+/// What can be found wrong without a window is found before it opens.
+pub fn run(args: &ViewArgs) -> Result<(), Failure> {
+    let job = args.job.job()?;
+    renderer::plan(&job)?;
+    let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
+    let gpu = GpuOptions { device, validation: args.validation, capture: false };
+    let ev = lab::exposure(&job.settings, &job.scene);
+    let arguments = arguments(std::env::args_os(), "--screenshot");
+    let viewing = Viewing { gpu, frames: args.frames, screenshot: args.screenshot.clone(), arguments, ev, say };
+    let watched = window::view(job, viewing)?;
+    args.screenshot.iter().for_each(|path| say(&format!("written: {}", path.display())));
+    if args.frames.is_some() { print(&watched.write(args.list.format)?) } else { Ok(()) }
+}

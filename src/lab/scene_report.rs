@@ -1,0 +1,261 @@
+//! What is in a scene: enough to choose it, and to know what its pictures will show.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::{Cell, Report, Table};
+use crate::{
+    metrics::bare_irradiance,
+    scene::{Camera, CameraKind, Light, LightKind, Material, MaterialKind, Object, Region, Scene, Shape},
+};
+
+/// One scene.
+#[derive(Debug, Serialize)]
+pub struct SceneReport {
+    schema: &'static str,
+    name: String,
+    title: String,
+    file: String,
+    hash: String,
+    /// What counts as the caustic.
+    class: String,
+    exposure_ev: f64,
+    /// How bright the region is without the specular objects.
+    e0_w_m2: f64,
+    region: RegionRow,
+    objects: Vec<ObjectRow>,
+    materials: Vec<MaterialRow>,
+    lights: Vec<LightRow>,
+    cameras: Vec<CameraRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct RegionRow {
+    receiver: String,
+    center_m: [f64; 3],
+    /// Whole edges.
+    size_m: [f64; 2],
+}
+
+#[derive(Debug, Serialize)]
+struct ObjectRow {
+    name: String,
+    shape: &'static str,
+    /// Of its box in the world.
+    size_m: [f64; 3],
+    material: String,
+    triangles: Option<u64>,
+    file: Option<String>,
+    visible_to_camera: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct MaterialRow {
+    name: String,
+    kind: &'static str,
+    /// By name, its unit included; of each band.
+    #[serde(flatten)]
+    values: BTreeMap<&'static str, [f64; 3]>,
+}
+
+#[derive(Debug, Serialize)]
+struct LightRow {
+    name: String,
+    kind: &'static str,
+    /// W/m² on a plane that faces parallel light; W/sr of a point, and on the axis of a spot.
+    bands: [f64; 3],
+    /// What it gives in all, mean of the bands; parallel light has no end.
+    power_w: Option<f64>,
+    direction: Option<[f64; 3]>,
+    position_m: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Serialize)]
+struct CameraRow {
+    name: String,
+    kind: &'static str,
+    /// Of a pinhole.
+    fov_y_degrees: Option<f64>,
+    /// Of an orthographic one.
+    height_m: Option<f64>,
+    position_m: [f64; 3],
+    target_m: [f64; 3],
+    hides_specular: bool,
+}
+
+impl SceneReport {
+    /// From a loaded scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            schema: "nephroid.scene/1",
+            name: scene.name.clone(),
+            title: scene.title.clone(),
+            file: scene.source.file.clone(),
+            hash: scene.source.hash.clone(),
+            class: scene.paths.to_string(),
+            exposure_ev: scene.exposure,
+            e0_w_m2: bare_irradiance(scene),
+            region: RegionRow::new(scene, &scene.region),
+            objects: scene.objects.iter().map(|object| ObjectRow::new(scene, object)).collect(),
+            materials: scene.materials.iter().map(MaterialRow::new).collect(),
+            lights: scene.lights.iter().map(LightRow::new).collect(),
+            cameras: scene.cameras.iter().map(|(name, camera)| CameraRow::new(name, camera)).collect(),
+        }
+    }
+}
+
+impl RegionRow {
+    fn new(scene: &Scene, region: &Region) -> Self {
+        let receiver = scene.objects[region.receiver].name.clone();
+        let size_m = [region.u, region.v].map(|half| 2.0 * half.length());
+        Self { receiver, center_m: region.center.to_array(), size_m }
+    }
+}
+
+impl ObjectRow {
+    fn new(scene: &Scene, object: &Object) -> Self {
+        let (shape, mesh) = match &object.shape {
+            Shape::Sphere { .. } => ("sphere", None),
+            Shape::Quad { .. } => ("quad", None),
+            Shape::Canonical { kind, .. } => (kind.name(), None),
+            Shape::Mesh { mesh, .. } => ("mesh", Some(mesh)),
+        };
+        Self {
+            name: object.name.clone(),
+            shape,
+            size_m: object.shape.bounds().map_or(DVec3::ZERO, |[low, high]| high - low).to_array(),
+            material: scene.materials[object.material].name.clone(),
+            triangles: mesh.map(|mesh| mesh.triangles.len() as u64),
+            file: mesh.map(|mesh| mesh.file.clone()),
+            visible_to_camera: object.visible_to_camera,
+        }
+    }
+}
+
+impl MaterialRow {
+    fn new(material: &Material) -> Self {
+        let (kind, values) = match material.kind {
+            MaterialKind::Diffuse { albedo } => ("diffuse", vec![("albedo", albedo)]),
+            MaterialKind::Dielectric { ior, absorption } => {
+                ("dielectric", vec![("ior", ior), ("absorption_per_m", absorption)])
+            }
+            MaterialKind::Mirror { reflectance } => ("mirror", vec![("reflectance", reflectance)]),
+            MaterialKind::Conductor { eta, k } => ("conductor", vec![("eta", eta), ("k", k)]),
+        };
+        Self { name: material.name.clone(), kind, values: values.into_iter().collect() }
+    }
+
+    fn text(&self) -> String {
+        let value = |(name, bands): (&&str, &[f64; 3])| format!("{} {}", name.replace('_', " "), shown(*bands));
+        self.values.iter().map(value).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl LightRow {
+    fn new(light: &Light) -> Self {
+        let (kind, direction) = match &light.kind {
+            LightKind::Directional { direction, .. } => ("directional", Some(*direction)),
+            LightKind::Point { .. } => ("point", None),
+            LightKind::Spot { beam, .. } => ("spot", Some(beam.axis)),
+        };
+        Self {
+            name: light.name.clone(),
+            kind,
+            bands: light.kind.power(),
+            power_w: light.kind.flux().map(|bands| bands.iter().sum::<f64>() / 3.0),
+            direction: direction.map(|d| d.to_array()),
+            position_m: light.kind.position().map(|p| p.to_array()),
+        }
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        let unit = if self.position_m.is_some() { "W/sr" } else { "W/m2" };
+        let at = self.position_m.map(|at| format!("at {}", vector(at)));
+        let along = self.direction.map(|along| format!("along {}", vector(along)));
+        let place = at.into_iter().chain(along).collect::<Vec<_>>().join(", ");
+        let power = self.power_w.map_or(Cell::None, |watts| Cell::Real(watts, 4));
+        let strength = Cell::text(format!("{} {unit}", shown(self.bands)));
+        vec![Cell::text(&self.name), Cell::text(self.kind), strength, power, Cell::text(place)]
+    }
+}
+
+impl CameraRow {
+    fn new(name: &str, camera: &Camera) -> Self {
+        let (kind, fov_y_degrees, height_m) = match camera.kind {
+            CameraKind::Pinhole { fov_y } => ("pinhole", Some(fov_y), None),
+            CameraKind::Orthographic { height, .. } => ("orthographic", None, Some(height)),
+        };
+        let [position_m, target_m] = [camera.position, camera.target].map(|p| p.to_array());
+        let hides_specular = camera.hides_specular;
+        Self { name: name.to_owned(), kind, fov_y_degrees, height_m, position_m, target_m, hides_specular }
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        let field = self.fov_y_degrees.map(|degrees| format!("{degrees} degrees"));
+        let field = field.or(self.height_m.map(|height| format!("{height} m"))).unwrap_or_default();
+        let way = format!("from {} to {}", vector(self.position_m), vector(self.target_m));
+        let sees = if self.hides_specular { "no specular object" } else { "all" };
+        vec![Cell::text(&self.name), Cell::text(self.kind), Cell::text(field), Cell::text(way), Cell::text(sees)]
+    }
+}
+
+impl Report for SceneReport {
+    fn heading(&self) -> Vec<String> {
+        let [width, height] = self.region.size_m;
+        vec![
+            format!("{}: {}", self.name, self.title),
+            format!("{}, hash {}", self.file, self.hash),
+            format!("caustic {}, exposure {} EV", self.class, self.exposure_ev),
+            format!("region {width} x {height} m on {}, E0 {:.4} W/m2", self.region.receiver, self.e0_w_m2),
+        ]
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let objects = self.objects.iter().map(|o| {
+            let size = o.size_m.map(|side| format!("{side:.3}")).join(" x ");
+            let file = o.file.as_ref().map_or(Cell::None, Cell::text);
+            let seen = if o.visible_to_camera { "yes" } else { "no" };
+            let [name, shape, material] = [o.name.as_str(), o.shape, &o.material].map(Cell::text);
+            vec![name, shape, Cell::text(size), material, Cell::count(o.triangles), file, Cell::text(seen)]
+        });
+        let materials =
+            self.materials.iter().map(|m| vec![Cell::text(&m.name), Cell::text(m.kind), Cell::text(m.text())]);
+        let lights = self.lights.iter().map(LightRow::cells);
+        let cameras = self.cameras.iter().map(CameraRow::cells);
+        let table = |name, columns: &[&'static str], rows| Table { name, columns: columns.to_vec(), rows };
+        vec![
+            table(
+                "objects",
+                &["object", "shape", "size m", "material", "triangles", "file", "seen"],
+                objects.collect(),
+            ),
+            table("materials", &["material", "kind", "what it does"], materials.collect()),
+            table("lights", &["light", "kind", "strength", "power W", "place"], lights.collect()),
+            table("cameras", &["camera", "kind", "field", "looks", "sees"], cameras.collect()),
+        ]
+    }
+
+    /// The heading's figures too.
+    fn csv_tables(&self) -> Vec<Table> {
+        let [width, height] = self.region.size_m;
+        let figures = [self.e0_w_m2, width, height, self.exposure_ev].map(|figure| Cell::Real(figure, 4));
+        let words = [&self.name, &self.title, &self.class, &self.hash].map(Cell::text);
+        let columns =
+            ["scene", "title", "class", "hash", "e0 W/m2", "region width m", "region height m", "exposure EV"];
+        let rows = vec![words.into_iter().chain(figures).collect()];
+        let scene = Table { name: "scene", columns: columns.to_vec(), rows };
+        [scene].into_iter().chain(self.tables()).collect()
+    }
+}
+
+/// One number where all bands are alike.
+fn shown([red, green, blue]: [f64; 3]) -> String {
+    if red == green && green == blue { red.to_string() } else { format!("[{red}, {green}, {blue}]") }
+}
+
+fn vector(of: [f64; 3]) -> String {
+    let [x, y, z] = of.map(|x| format!("{:.3}", x + 0.0));
+    format!("[{x}, {y}, {z}]")
+}
