@@ -4,7 +4,7 @@
 //! flux of the scene's path class, or the whole receiver. For the mesh that takes a ray trace, done here in float64.
 use glam::{DVec2, DVec3, Vec3A};
 use nephroid::{
-    scene::{LightKind, MaterialKind, Scene, Shape},
+    scene::{Canonical, LightKind, MaterialKind, Scene, Shape},
     truth::{light::Photons, trace::Space},
 };
 use obvhs::{
@@ -13,6 +13,8 @@ use obvhs::{
     bvh2::{Bvh2, builder::build_bvh2},
     ray::{Ray, RayHit},
 };
+
+use std::f64::consts::TAU;
 
 /// The share of flux that a region must hold.
 const SHARE: f64 = 0.99;
@@ -53,6 +55,18 @@ fn flat_water_frames_the_receiver() {
     let Shape::Quad { center, u, v } = scene.objects[scene.region.receiver].shape else { panic!("no quad") };
     assert_eq!([scene.region.center, scene.region.u, scene.region.v], [center, u, v]);
     assert_eq!([scene.extent.center, scene.extent.u, scene.extent.v], [center, u, v], "cut to the receiver");
+}
+
+#[test]
+fn sine_water_frames_whole_waves() {
+    let scene = load("sine-water");
+    let Some(wave) = scene.objects.iter().find_map(|object| match object.shape {
+        Shape::Canonical { kind: Canonical::Sine { wave }, to_world } => Some(to_world.x_axis.length() * TAU / wave),
+        _ => None,
+    }) else {
+        panic!("no wave")
+    };
+    assert!((2.0 * scene.region.u.length() / wave - 2.0).abs() < 1e-12 && scene.region.center.x == 0.0, "two of them");
 }
 
 /// Share of the class's flux that lands in the region, by a few photons of the truth.

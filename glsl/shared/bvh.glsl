@@ -9,6 +9,7 @@
 #include "shared/canonical.glsl"
 #include "shared/intersect.glsl"
 #include "shared/scene.glsl"
+#include "shared/sine.glsl"
 
 struct Hit {
     float t;        // metres
@@ -64,6 +65,9 @@ float hit_shape(Instance shape, LocalRay ray, float t_max, out uint primitive, o
 #endif
 #ifdef HAS_PARABOLOIDS
     if (shape.kind == SHAPE_PARABOLOID) t = hit_paraboloid(ray, uintBitsToFloat(shape.detail), t_max, uv);
+#endif
+#ifdef HAS_SINES
+    if (shape.kind == SHAPE_SINE) t = hit_sine(ray, uintBitsToFloat(shape.detail), t_max, uv);
 #endif
     return t;
 }

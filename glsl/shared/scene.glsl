@@ -3,10 +3,10 @@
 #define SCENE_GLSL
 
 // DISPERSIVE is defined where materials bend the bands apart: they are then traced apart.
-// The host defines HAS_SPHERES, HAS_QUADS, HAS_MESHES, HAS_BOXES, HAS_DISKS, HAS_CYLINDERS and HAS_PARABOLOIDS where a
-// scene has any, and NO_SPOTS where it has no spot: what it lacks is not compiled.
+// The host defines HAS_SPHERES, HAS_QUADS, HAS_MESHES, HAS_BOXES, HAS_DISKS, HAS_CYLINDERS, HAS_PARABOLOIDS and
+// HAS_SINES where a scene has any, and NO_SPOTS where it has no spot: what it lacks is not compiled.
 #if defined(HAS_SPHERES) || defined(HAS_BOXES) || defined(HAS_DISKS) || defined(HAS_CYLINDERS) || \
-    defined(HAS_PARABOLOIDS)
+    defined(HAS_PARABOLOIDS) || defined(HAS_SINES)
 #define HAS_CAST // shapes that the eye casts rays at; quads and meshes are rasterised as they are
 #endif
 
@@ -34,7 +34,7 @@ struct Instance {
     uint kind;
     uint material;
     uint object; // index of the object in the scene
-    uint detail; // mesh: its root in scene_nodes; cylinder, paraboloid: the bits of its cut
+    uint detail; // mesh: its root in scene_nodes; cylinder, paraboloid: the bits of its cut; sine: of its wave
 };
 
 const uint SHAPE_SPHERE = 0u; // unit sphere at the origin
@@ -44,6 +44,7 @@ const uint SHAPE_BOX = 3u;        // [-1, 1]^3
 const uint SHAPE_DISK = 4u;       // unit disk in the xy-plane, normal +z
 const uint SHAPE_CYLINDER = 5u;   // x^2 + y^2 = 1, 0 <= z <= 1, x >= cut
 const uint SHAPE_PARABOLOID = 6u; // z = x^2 + y^2 <= 1, x >= cut
+const uint SHAPE_SINE = 7u;       // z = sin(wave x) over [-1, 1]^2
 
 struct Material {
     uint kind;

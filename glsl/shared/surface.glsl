@@ -9,7 +9,7 @@ struct Surface {
     vec3 p;   // on the primitive, not on the ray: its error does not grow with the ray's length
     vec3 ng;  // unit geometric normal of the outside, whichever side the ray came from
     vec3 ns;  // unit interpolated normal, on ng's side
-    // Quad, box, disk: in [-1, 1]^2; sphere: longitude about +y from +z, latitude (radians); cylinder: angle about its
+    // Quad, box, disk, sine: in [-1, 1]^2; sphere: longitude about +y from +z, latitude (radians); cylinder: angle about its
     // axis (radians), share of its height; paraboloid: across its axis, in rims; mesh: barycentric weights of b, c.
     vec2 uv;
     uint object;
@@ -139,6 +139,14 @@ Surface surface_at(vec3 o, vec3 d, Hit hit) {
     if (shape.kind == SHAPE_PARABOLOID) {
         vec3 local = vec3(hit.uv, dot(hit.uv, hit.uv));
         s = surface_of_canonical(shape, local, vec3(2.0 * hit.uv, -1.0), hit.uv, 1.0);
+    }
+#endif
+#ifdef HAS_SINES
+    if (shape.kind == SHAPE_SINE) {
+        float wave = uintBitsToFloat(shape.detail);
+        vec3 local = vec3(hit.uv, sin(wave * hit.uv.x));
+        vec3 normal = vec3(-wave * cos(wave * hit.uv.x), 0.0, 1.0);
+        s = surface_of_canonical(shape, local, normal, hit.uv, 1.0 + wave);
     }
 #endif
 #ifdef HAS_MESHES

@@ -1,8 +1,8 @@
 //! The scene's six buffers in a plan (`glsl/shared/scene.glsl`).
 
 use super::accel::{
-    Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SPHERE,
-    SceneArrays,
+    Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SINE,
+    SHAPE_SPHERE, SceneArrays,
 };
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Kinds of shapes, and what is defined for shaders of a scene that has them.
-const KINDS: [(u32, &str); 7] = [
+const KINDS: [(u32, &str); 8] = [
     (SHAPE_SPHERE, "HAS_SPHERES"),
     (SHAPE_QUAD, "HAS_QUADS"),
     (SHAPE_MESH, "HAS_MESHES"),
@@ -18,6 +18,7 @@ const KINDS: [(u32, &str); 7] = [
     (SHAPE_DISK, "HAS_DISKS"),
     (SHAPE_CYLINDER, "HAS_CYLINDERS"),
     (SHAPE_PARABOLOID, "HAS_PARABOLOIDS"),
+    (SHAPE_SINE, "HAS_SINES"),
 ];
 /// Vertices of the box about a shape that the eye intersects itself (`glsl/eye/gbuffer.vert`).
 const BOX_VERTICES: u32 = 36;

@@ -3,6 +3,8 @@
 
 use glam::DVec3;
 
+use super::sine;
+
 /// Pieces of the polygon that stands for a whole circle in a [hull](Canonical::hull): 0.1 % wider than the circle.
 const PIECES: f64 = 64.0;
 
@@ -23,6 +25,11 @@ pub enum Canonical {
         /// [`WHOLE`] for all of it.
         cut: f64,
     },
+    /// z = sin(`wave` x) over [−1, 1]², an open interface; its normal has z > 0.
+    Sine {
+        /// Radians.
+        wave: f64,
+    },
 }
 
 /// A cut that takes nothing off, with room for rounding.
@@ -36,6 +43,7 @@ impl Canonical {
             Self::Disk => "disk",
             Self::Cylinder { .. } => "cylinder",
             Self::Paraboloid { .. } => "paraboloid",
+            Self::Sine { .. } => "sine",
         }
     }
 
@@ -46,7 +54,7 @@ impl Canonical {
             all.collect()
         };
         match *self {
-            Self::Box => {
+            Self::Box | Self::Sine { .. } => {
                 (0..8).map(|k| DVec3::from([0, 1, 2].map(|axis| f64::from(k >> axis & 1) * 2.0 - 1.0))).collect()
             }
             Self::Disk => round(WHOLE, &[0.0]),
@@ -57,15 +65,19 @@ impl Canonical {
     /// The first meeting after `near` with the ray o + t d, in lengths of d. A ray that starts on the shape starts at 0
     /// exactly, so that no tolerance decides whether it meets it again.
     pub fn meet(&self, o: DVec3, d: DVec3, near: f64, starts_here: bool) -> Option<f64> {
+        if let Self::Sine { wave } = *self {
+            return sine::meet(wave, o, d, near, starts_here);
+        }
         let crossings = match self {
             Self::Box => slabs(o, d),
             Self::Disk => [-o.z / d.z, f64::NAN],
             Self::Cylinder { .. } => tube(o, d),
             Self::Paraboloid { .. } => bowl(o, d),
+            Self::Sine { .. } => [f64::NAN; 2],
         };
         let again = match self {
             Self::Box => [f64::NAN, crossings[1]],
-            Self::Disk => [f64::NAN; 2],
+            Self::Disk | Self::Sine { .. } => [f64::NAN; 2],
             Self::Cylinder { .. } => [f64::NAN, -2.0 * flat(o, d) / flat(d, d)],
             Self::Paraboloid { .. } => [f64::NAN, (d.z - 2.0 * flat(o, d)) / flat(d, d)],
         };
@@ -76,7 +88,7 @@ impl Canonical {
     /// Whether a place on the whole surface is on the part that is there.
     fn reaches(&self, p: DVec3) -> bool {
         match *self {
-            Self::Box => true,
+            Self::Box | Self::Sine { .. } => true,
             Self::Disk => flat(p, p) <= 1.0,
             Self::Cylinder { cut } => p.x >= cut && (0.0..=1.0).contains(&p.z),
             Self::Paraboloid { cut } => p.x >= cut && flat(p, p) <= 1.0,
@@ -95,6 +107,10 @@ impl Canonical {
             Self::Cylinder { .. } => {
                 let out = p.with_z(0.0).normalize_or(DVec3::X);
                 (out.with_z(p.z), out)
+            }
+            Self::Sine { wave } => {
+                let (sin, cos) = (wave * p.x).sin_cos();
+                (p.with_z(sin), DVec3::new(-wave * cos, 0.0, 1.0))
             }
             Self::Paraboloid { .. } => (p.with_z(flat(p, p)), DVec3::new(2.0 * p.x, 2.0 * p.y, -1.0)),
         }
@@ -118,7 +134,7 @@ fn segment(cut: f64) -> Vec<(f64, f64)> {
 }
 
 /// Where a line enters and leaves [−1, 1]³; NaN if it passes by.
-fn slabs(o: DVec3, d: DVec3) -> [f64; 2] {
+pub(super) fn slabs(o: DVec3, d: DVec3) -> [f64; 2] {
     let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..3 {
         // Within a face's plane 0/0 is NaN, which `min` and `max` pass over.
@@ -149,13 +165,14 @@ fn bowl(o: DVec3, d: DVec3) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    const ALL: [Canonical; 6] = [
+    const ALL: [Canonical; 7] = [
         Canonical::Box,
         Canonical::Disk,
         Canonical::Cylinder { cut: WHOLE },
         Canonical::Cylinder { cut: 0.3 },
         Canonical::Paraboloid { cut: WHOLE },
         Canonical::Paraboloid { cut: 0.3 },
+        Canonical::Sine { wave: 9.0 },
     ];
     /// Some dozen roundings on numbers of order ten.
     const ROUNDING: f64 = 1e-13;

@@ -93,6 +93,7 @@ pub struct ObjectFile {
     pub disk: Option<DiskFile>,
     pub cylinder: Option<CylinderFile>,
     pub paraboloid: Option<ParaboloidFile>,
+    pub sine: Option<SineFile>,
     pub mesh: Option<MeshFile>,
 }
 
@@ -151,6 +152,16 @@ pub struct ParaboloidFile {
     /// With `middle`, an off-axis part.
     pub from: Option<f64>,
     pub middle: Option<Floats<3>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SineFile {
+    pub center: Floats<3>,
+    pub u: Floats<3>,
+    pub v: Floats<3>,
+    pub amplitude: f64,
+    pub wavelength: f64,
 }
 
 #[derive(Deserialize)]

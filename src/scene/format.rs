@@ -1,7 +1,7 @@
 //! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
 
 /// Tables that say of what kind their parent is; a dotted key may leave them out.
-pub const KINDS: [&str; 16] = [
+pub const KINDS: [&str; 17] = [
     "box",
     "conductor",
     "cylinder",
@@ -16,6 +16,7 @@ pub const KINDS: [&str; 16] = [
     "pinhole",
     "point",
     "quad",
+    "sine",
     "sphere",
     "spot",
 ];
@@ -39,9 +40,18 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["region"] => &["receiver", "center", "half"],
         ["extent"] => &["center", "half"],
         ["cameras", _] => &["pinhole", "orthographic"],
-        ["objects", _] => {
-            &["material", "visible_to_camera", "sphere", "quad", "box", "disk", "cylinder", "paraboloid", "mesh"]
-        }
+        ["objects", _] => &[
+            "material",
+            "visible_to_camera",
+            "sphere",
+            "quad",
+            "box",
+            "disk",
+            "cylinder",
+            "paraboloid",
+            "sine",
+            "mesh",
+        ],
         ["materials", _] => &["diffuse", "dielectric", "mirror", "conductor"],
         ["lights", _] => &["directional", "point", "spot"],
         ["cameras", _, "pinhole"] => &["position", "target", "up", "hides_specular", "fov_y"],
@@ -52,6 +62,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _, "disk"] => &["center", "normal", "radius"],
         ["objects", _, "cylinder"] => &["base", "axis", "radius", "height", "arc", "middle"],
         ["objects", _, "paraboloid"] => &["vertex", "axis", "focal_length", "rim", "from", "middle"],
+        ["objects", _, "sine"] => &["center", "u", "v", "amplitude", "wavelength"],
         ["objects", _, "mesh"] => &["file", "fit", "center", "rotate"],
         ["materials", _, "diffuse"] => &["albedo"],
         ["materials", _, "dielectric"] => &["ior", "absorption"],
@@ -92,6 +103,7 @@ mod tests {
         assert_eq!(keys(&["objects", "", "disk"]), known::<file::DiskFile>());
         assert_eq!(keys(&["objects", "", "cylinder"]), known::<file::CylinderFile>());
         assert_eq!(keys(&["objects", "", "paraboloid"]), known::<file::ParaboloidFile>());
+        assert_eq!(keys(&["objects", "", "sine"]), known::<file::SineFile>());
         assert_eq!(keys(&["objects", "", "mesh"]), known::<file::MeshFile>());
         assert_eq!(keys(&["materials", ""]), known::<file::MaterialFile>());
         assert_eq!(keys(&["materials", "", "diffuse"]), known::<file::DiffuseFile>());

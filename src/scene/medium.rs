@@ -66,6 +66,11 @@ fn hold(shape: &Shape, p: DVec3) -> Option<Hold> {
                 let at = to_world.inverse().transform_point3(p);
                 (at.z < 0.0 && at.truncate().length() <= 1.0).then_some(Hold::Open(-at.z * to_world.z_axis.length()))
             }
+            Canonical::Sine { .. } => {
+                let at = to_world.inverse().transform_point3(p);
+                let depth = (kind.foot(at).0.z - at.z) * to_world.matrix3.z_axis.length();
+                (depth > 0.0 && at.truncate().abs().max_element() <= 1.0).then_some(Hold::Open(depth))
+            }
             // Refused as dielectrics: open shells bound nothing.
             Canonical::Cylinder { .. } | Canonical::Paraboloid { .. } => None,
         },

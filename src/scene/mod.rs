@@ -3,8 +3,8 @@
 //! A scene is a TOML file (see `scenes/` for commented ones) or one of the [shipped](Scene::shipped) scenes. Units are
 //! metres, W/m² for directional lights and W/sr for point lights; the file's `unit` scales every length in it.
 //!
-//! A closed dielectric shape holds its medium inside. A dielectric quad or disk is an open interface: its medium lies on
-//! the side its normal points away from (flat water under the air). Other open shapes bound no medium. A material *is* the identity of its medium: where two
+//! A closed dielectric shape holds its medium inside. A dielectric quad, disk or sine is an open interface: its medium
+//! lies on the side its normal points away from (water under the air). Other open shapes bound no medium. A material *is* the identity of its medium: where two
 //! shapes of one material touch there is no interface, and nested dielectrics can be told apart.
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -30,6 +30,7 @@ mod overrides;
 mod patch;
 mod shape_files;
 mod shipped;
+mod sine;
 
 use crate::names::NoSuch;
 

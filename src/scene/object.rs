@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec3};
 use super::{
     Material, Mesh, Models, Object, Shape,
     error::SceneError,
-    file::{MeshFile, ObjectFile, QuadFile, SphereFile},
+    file::{Floats, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile},
     load::Files,
     locate::Key,
     models, obj, shape_files,
@@ -41,12 +41,13 @@ fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result
         file.disk.as_ref().map(|written| shape_files::disk(&key.key("disk"), written, unit)),
         file.cylinder.as_ref().map(|written| shape_files::cylinder(&key.key("cylinder"), written, unit)),
         file.paraboloid.as_ref().map(|written| shape_files::paraboloid(&key.key("paraboloid"), written, unit)),
+        file.sine.as_ref().map(|written| sine(&key.key("sine"), written, unit)),
         file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, meshes)),
     ];
     let mut given = kinds.into_iter().flatten();
     match (given.next(), given.next()) {
         (Some(shape), None) => shape,
-        _ => Err(key.one_kind(&["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "mesh"])),
+        _ => Err(key.one_kind(&["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "sine", "mesh"])),
     }
 }
 
@@ -56,14 +57,25 @@ fn sphere(key: &Key, file: &SphereFile, unit: f64) -> Result<Shape, SceneError> 
 }
 
 fn quad(key: &Key, file: &QuadFile, unit: f64) -> Result<Shape, SceneError> {
-    let center = key.key("center").point(file.center, unit)?;
-    let (u, v) = (key.key("u").edge(file.u, unit)?, key.key("v").edge(file.v, unit)?);
+    let [center, u, v] = rectangle(key, [file.center, file.u, file.v], unit)?;
+    Ok(Shape::Quad { center, u, v })
+}
+
+fn sine(key: &Key, file: &SineFile, unit: f64) -> Result<Shape, SceneError> {
+    let sheet = rectangle(key, [file.center, file.u, file.v], unit)?;
+    shape_files::sine(key, file, sheet, unit)
+}
+
+/// Centre and half edges at right angles.
+fn rectangle(key: &Key, [center, u, v]: [Floats<3>; 3], unit: f64) -> Result<[DVec3; 3], SceneError> {
+    let center = key.key("center").point(center, unit)?;
+    let (u, v) = (key.key("u").edge(u, unit)?, key.key("v").edge(v, unit)?);
     let cosine = u.normalize().dot(v.normalize());
     if cosine.abs() > SQUARE {
         let found = format!("an angle of {:.3}°", cosine.acos().to_degrees());
         return Err(key.key("v").fault("a half edge at right angles to `u`", found, "turn one of the two"));
     }
-    Ok(Shape::Quad { center, u, v })
+    Ok([center, u, v])
 }
 
 /// Scaled so that its largest side, before it is turned, is `fit`; turned about x, then y, then z; its box then rests

@@ -4,13 +4,15 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 use super::{
     Canonical, Material, MaterialKind, Shape, WHOLE,
     error::SceneError,
-    file::{BoxFile, CylinderFile, DiskFile, Floats, ParaboloidFile},
+    file::{BoxFile, CylinderFile, DiskFile, Floats, ParaboloidFile, SineFile},
     locate::Key,
 };
 
 /// Sine between an axis and a direction below which it has no part across the axis.
 const ACROSS: f64 = 1e-6;
 const FULL_TURN: f64 = 360.0;
+/// Waves on half a sheet: beyond these float32 loses their phase.
+const WAVES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 /// Turned about x, then y, then z, by degrees.
 pub fn turned(key: &Key, rotate: Floats<3>) -> Result<DMat3, SceneError> {
@@ -67,6 +69,15 @@ pub fn paraboloid(key: &Key, file: &ParaboloidFile, unit: f64) -> Result<Shape, 
     let depth = rim * rim / (4.0 * focal_length);
     let linear = frame(axis, middle) * DMat3::from_diagonal(DVec3::new(rim, rim, depth));
     Ok(placed(Canonical::Paraboloid { cut: cut.unwrap_or(WHOLE) }, linear, vertex))
+}
+
+/// A wave along u over a rectangle.
+pub fn sine(key: &Key, file: &SineFile, [center, u, v]: [DVec3; 3], unit: f64) -> Result<Shape, SceneError> {
+    let amplitude = key.key("amplitude").size(file.amplitude, unit)?;
+    let wavelength = key.key("wavelength").size(file.wavelength, unit)?;
+    let waves = key.key("wavelength").number(u.length() / wavelength, WAVES, "waves along u", "make them longer")?;
+    let linear = DMat3::from_cols(u, v, u.cross(v).normalize() * amplitude);
+    Ok(placed(Canonical::Sine { wave: std::f64::consts::TAU * waves }, linear, center))
 }
 
 /// The direction of the part's middle, across the axis.

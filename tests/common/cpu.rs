@@ -2,8 +2,8 @@
 use glam::{DMat3, DVec3, Vec3A};
 use nephroid::{
     passes::accel::{
-        Instance, Node, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SPHERE,
-        SceneArrays,
+        Instance, Node, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SINE,
+        SHAPE_SPHERE, SceneArrays,
     },
     scene::Canonical,
 };
@@ -110,6 +110,7 @@ pub fn canonical_of(instance: &Instance) -> Canonical {
         SHAPE_DISK => Canonical::Disk,
         SHAPE_CYLINDER => Canonical::Cylinder { cut },
         SHAPE_PARABOLOID => Canonical::Paraboloid { cut },
+        SHAPE_SINE => Canonical::Sine { wave: cut },
         kind => panic!("kind {kind} is no canonical shape"),
     }
 }

@@ -13,6 +13,9 @@ const RAYS: usize = 40_000;
 /// Where the tubes and bowls below are cut.
 const CUT: f64 = 0.25;
 
+/// Radians of the sine from its middle to its side.
+const WAVE: f64 = 9.0;
+
 /// o, d
 type Row = [f32; 6];
 
@@ -26,6 +29,8 @@ struct Case {
     place: &'static str,
     /// Crossings in float64, and the least of what decides whether there are any, over |d|².
     crossings: fn(DVec3, DVec3) -> (Vec<Crossing>, f64),
+    /// Of a direction, the part across what the surface is straight along.
+    across: fn(DVec3) -> f64,
     /// How far inside the part that is there a place lies; negative outside.
     inside: fn(DVec3) -> f64,
     /// A place on the surface from two numbers in [−1, 1]; its edges and rim are among them.
@@ -62,16 +67,47 @@ fn bowl(o: DVec3, d: DVec3) -> (Vec<Crossing>, f64) {
     (all, discriminant / d.length_squared())
 }
 
+/// By small steps through the sheet's box, roots by halves; what decides is the height where it turns, over the slope of
+/// the steepest place.
+fn wave(o: DVec3, d: DVec3) -> (Vec<Crossing>, f64) {
+    const STEPS: usize = 2000;
+    let height = |t: f64| o.z + d.z * t - (WAVE * (o.x + d.x * t)).sin();
+    let [mut from, mut to] = [f64::NEG_INFINITY, f64::INFINITY];
+    for (axis, reach) in [1.3, 1.3, 1.01].into_iter().enumerate().filter(|(axis, _)| d[*axis] != 0.0) {
+        let [a, b] = [-reach, reach].map(|side| (side - o[axis]) / d[axis]);
+        [from, to] = [from.max(a.min(b)), to.min(a.max(b))];
+    }
+    if from >= to {
+        return (vec![], f64::INFINITY);
+    }
+    let at = |k: usize| from + (to - from) * k as f64 / STEPS as f64;
+    let heights: Vec<f64> = (0..=STEPS).map(|k| height(at(k))).collect();
+    let mut all = vec![];
+    for k in (0..STEPS).filter(|k| (heights[*k] < 0.0) != (heights[k + 1] < 0.0)) {
+        let (mut low, mut high) = (at(k), at(k + 1));
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if (height(middle) < 0.0) == (heights[k] < 0.0) { low = middle } else { high = middle }
+        }
+        let slope = WAVE * (WAVE * (o.x + d.x * low)).cos();
+        all.push((low, DVec3::new(-slope, 0.0, 1.0).normalize()));
+    }
+    let turn = |w: &[f64]| w[1] - (w[2] - w[0]).powi(2) / (8.0 * (w[0] - 2.0 * w[1] + w[2]));
+    let turns = heights.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) <= 0.0).map(|w| turn(w).abs());
+    (all, turns.fold(f64::INFINITY, f64::min) / WAVE)
+}
+
 fn rest(p: DVec3, axis: usize) -> f64 {
     1.0 - (p.abs() * (1.0 - DVec3::AXES[axis])).max_element()
 }
 
-const CASES: [Case; 4] = [
+const CASES: [Case; 5] = [
     Case {
         name: "box",
         hit: "hit_box(ray, NO_HIT, k, uv)",
         place: "box_place(k, uv)",
         crossings: |o, d| planes(o, d, 0..3, &[-1.0, 1.0]),
+        across: |d| flat(d).length(),
         inside: |p| {
             let axis = (0..3).fold(0, |best, k| if p[k].abs() > p[best].abs() { k } else { best });
             rest(p, axis)
@@ -83,6 +119,7 @@ const CASES: [Case; 4] = [
         hit: "hit_disk(ray, NO_HIT, uv)",
         place: "vec3(uv, 0.0)",
         crossings: |o, d| planes(o, d, 2..3, &[0.0]),
+        across: |d| flat(d).length(),
         inside: |p| 1.0 - flat(p).length(),
         on: |u, v| flat(DVec3::new(u, v, 0.0)),
     },
@@ -91,6 +128,7 @@ const CASES: [Case; 4] = [
         hit: "hit_cylinder(ray, 0.25, NO_HIT, k, uv)",
         place: "vec3(cylinder_normal(k, uv.x).xy, uv.y)",
         crossings: tube,
+        across: |d| flat(d).length(),
         inside: |p| p.z.min(1.0 - p.z).min(p.x - CUT),
         on: |u, v| DVec3::new((1.3 * u).cos(), (1.3 * u).sin(), 0.5 + 0.5 * v),
     },
@@ -99,8 +137,18 @@ const CASES: [Case; 4] = [
         hit: "hit_paraboloid(ray, 0.25, NO_HIT, uv)",
         place: "vec3(uv, dot(uv, uv))",
         crossings: bowl,
+        across: |d| flat(d).length(),
         inside: |p| (1.0 - flat(p).length()).min(p.x - CUT),
         on: |u, v| DVec3::new(u, v, u * u + v * v),
+    },
+    Case {
+        name: "sine",
+        hit: "hit_sine(ray, 9.0, NO_HIT, uv)",
+        place: "vec3(uv, sin(9.0 * uv.x))",
+        crossings: wave,
+        across: |d| d.x.abs(),
+        inside: |p| rest(p, 2),
+        on: |u, v| DVec3::new(u, v, (WAVE * u).sin()),
     },
 ];
 
@@ -112,7 +160,7 @@ fn hits(case: &Case, rows: &[Row]) -> Vec<(f64, DVec3)> {
         case.hit, case.place
     );
     let probe = Probe {
-        includes: &["shared/canonical.glsl"],
+        includes: &["shared/canonical.glsl", "shared/sine.glsl"],
         input: "vec3 o; vec3 d;",
         output: "float t; vec3 place;",
         body: &body,
@@ -154,10 +202,12 @@ fn judge(case: &Case, r: &Row, t: f64, place: DVec3) -> Result<bool, String> {
     let rounding = ROUNDINGS * UNIT_ROUNDOFF * (1.0 + o.length());
     let (crossings, decides) = (case.crossings)(o, d);
     let along = |(t, n): &Crossing| {
-        // A tangent's crossings are lost in the root of the rounding, as long as the ray crosses the axis.
+        // A tangent's crossings are lost in the root of the rounding, an inflection's in its cube root, as long as the ray
+        // crosses the axis.
         let cosine = d.normalize().dot(*n).abs();
-        let across = flat(d.normalize()).length();
-        let allowed = 2.0 * rounding / cosine.max((STEEPEST * rounding).sqrt() * across).max(f64::MIN_POSITIVE);
+        let across = (case.across)(d.normalize());
+        let allowed =
+            2.0 * rounding / cosine.max((STEEPEST * rounding).powf(2.0 / 3.0) * across).max(f64::MIN_POSITIVE);
         (*t, allowed, (case.inside)(o + d * *t))
     };
     let mut all: Vec<_> = crossings.iter().map(along).filter(|c| c.0.is_finite()).collect();
@@ -174,7 +224,8 @@ fn judge(case: &Case, r: &Row, t: f64, place: DVec3) -> Result<bool, String> {
         }
         // A root that float32 cannot tell from the far one's neighbour is not missed.
         let missed = nearest.is_some_and(|c| c.0 + c.1 / d.length() < t - hit.1 / d.length());
-        return if missed { Err("misses a nearer crossing".to_owned()) } else { Ok(true) };
+        let wrong = missed && !tangent;
+        return if wrong { Err("misses a nearer crossing".to_owned()) } else { Ok(!missed) };
     }
     let clear = decides > STEEPEST * rounding;
     match nearest {

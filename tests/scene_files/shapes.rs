@@ -1,4 +1,4 @@
-//! Boxes, disks, cylinders and paraboloids: what their keys mean, and each fault with its line, key and remedy.
+//! Boxes, disks, cylinders, paraboloids and sines: what their keys mean, and each fault with its line, key and remedy.
 use glam::{DVec3, dvec3};
 use nephroid::scene::{Canonical, Place, Shape, WHOLE};
 
@@ -19,6 +19,9 @@ const CYLINDER: &str = "[objects.ball.cylinder]\nbase = [0, 0, 0]\naxis = [0, 1,
                         middle = [3, 1, 0]";
 const PARABOLOID: &str = "[objects.ball.paraboloid]\nvertex = [0, 0, 0]\naxis = [0, 1, 0]\nfocal_length = 0.5\nrim = 1\n\
                           from = 0.2\nmiddle = [1, 0, 0]";
+
+const SINE: &str =
+    "[objects.ball.sine]\ncenter = [0, 1, 0]\nu = [2, 0, 0]\nv = [0, 0, -3]\namplitude = 0.1\nwavelength = 0.5";
 
 fn canonical(text: &str) -> (Canonical, impl Fn([f64; 3]) -> DVec3 + use<>) {
     let scene = Folder::new().load(text, &[]).unwrap_or_else(|error| panic!("{error}"));
@@ -48,6 +51,9 @@ fn shapes_land_where_the_file_puts_them() {
     let (kind, at) = canonical(&with(PARABOLOID));
     assert_eq!(kind, Canonical::Paraboloid { cut: 0.2 });
     close(at([1.0, 0.0, 1.0]), dvec3(1.0, 0.5, 0.0));
+    let (kind, at) = canonical(&with(SINE));
+    assert_eq!(kind, Canonical::Sine { wave: 4.0 * std::f64::consts::TAU });
+    close(at([1.0, 1.0, 1.0]), dvec3(2.0, 1.1, -3.0));
     let whole = CYLINDER.replace("arc = 180\nmiddle = [3, 1, 0]", "");
     assert_eq!(canonical(&with(&whole)).0, Canonical::Cylinder { cut: WHOLE });
 }
@@ -60,6 +66,7 @@ fn every_key_of_a_shape_can_be_set() {
         (DISK, "objects.ball.radius", "3"),
         (CYLINDER, "objects.ball.arc", "90"),
         (PARABOLOID, "objects.ball.paraboloid.rim", "0.5"),
+        (SINE, "objects.ball.amplitude", "0.2"),
     ] {
         let (plain, set) =
             (Folder::new().load(with(shape), &[]).unwrap(), Folder::new().load(with(shape), &[(key, value)]).unwrap());
@@ -94,6 +101,10 @@ const CASES: &[Case] = &[
     (PARABOLOID, "rim = 1", "rim = -1", 24, "paraboloid.rim", "-1", "correct it"),
     (PARABOLOID, "from = 0.2", "from = 1", 25, "paraboloid.from", "1", "leave some of the mirror"),
     (PARABOLOID, "middle = [1, 0, 0]", "", 20, "paraboloid.middle", "none", "add `middle`"),
+    (SINE, "amplitude = 0.1", "amplitude = 0", 24, "sine.amplitude", "0", "correct it"),
+    (SINE, "wavelength = 0.5", "wavelength = 1e-6", 25, "sine.wavelength", "2000000", "make them longer"),
+    (SINE, "v = [0, 0, -3]", "v = [1, 0, 0]", 23, "sine.v", "0.000°", "turn one of the two"),
+    (SINE, "u = [2, 0, 0]", "", 20, "sine.u", "none", "add it"),
     (PARABOLOID, "vertex = [0, 0, 0]", "vertex = [0, 0]", 21, "paraboloid.vertex", "an array of 2", "write `[x, y, z]`"),
 ];
 
@@ -119,7 +130,7 @@ fn a_shell_of_glass_is_refused_where_its_material_stands() {
         assert!(error.expected.contains(name) && error.found.contains("`glass` on an open shell"), "{error}");
         assert!(error.remedy.contains("not built yet"), "{error}");
     }
-    for shape in [BOX, DISK] {
+    for shape in [BOX, DISK, SINE] {
         let text = with(shape).replacen("\"silver\"", "\"glass\"", 1);
         Folder::new().load(text, &[]).unwrap_or_else(|error| panic!("{error}"));
     }

@@ -56,7 +56,7 @@ fn path_classes_are_read_as_they_are_shown() {
 #[test]
 fn shipped_scenes_load_by_name_and_have_titles() {
     let names: Vec<_> = Scene::shipped().map(|(name, _)| name).collect();
-    assert_eq!(names, ["bunny", "diffuse", "flat-water", "glass-sphere", "null", "paraboloid", "ring"]);
+    assert_eq!(names, ["bunny", "diffuse", "flat-water", "glass-sphere", "null", "paraboloid", "ring", "sine-water"]);
     for (name, title) in Scene::shipped() {
         let scene = load(name, &[]).unwrap_or_else(|error| panic!("{error}"));
         assert!(!title.is_empty() && scene.title == title && scene.name == name);

@@ -44,7 +44,7 @@ pub struct Instance {
     pub material: u32,
     /// Index in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
-    /// Of a mesh, its root in the nodes; of a cylinder or paraboloid, the bits of its cut in float32.
+    /// Of a mesh, its root in the nodes; of a cylinder or paraboloid its cut, of a sine its wave, as the bits of a float32.
     pub detail: u32,
 }
 
@@ -108,6 +108,8 @@ pub const SHAPE_DISK: u32 = 4;
 pub const SHAPE_CYLINDER: u32 = 5;
 /// z = x² + y², up to 1, x from the cut on.
 pub const SHAPE_PARABOLOID: u32 = 6;
+/// z = sin(wave x) over [-1, 1]².
+pub const SHAPE_SINE: u32 = 7;
 
 /// A receiver.
 pub const MATERIAL_DIFFUSE: u32 = 0;

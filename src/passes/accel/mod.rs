@@ -184,8 +184,8 @@ fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Pl
         }
         Shape::Mesh { mesh, .. } if mesh.triangles.is_empty() => return Ok(None),
         Shape::Canonical { kind, to_world } => {
-            let (kind, cut) = canonical(kind);
-            detail = cut.to_bits();
+            let (kind, more) = canonical(kind);
+            detail = more.to_bits();
             let [lo, hi] = object.shape.bounds().unwrap_or_default();
             (kind, *to_world, (lo, hi))
         }
@@ -209,13 +209,14 @@ fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Pl
     Ok(Some(Placed { instance, mesh, bounds: roomy_box(lo, hi) }))
 }
 
-/// Its number, and the cut of what has one.
+/// Its number, and what more it needs to know.
 fn canonical(kind: &Canonical) -> (u32, f32) {
     match *kind {
         Canonical::Box => (SHAPE_BOX, 0.0),
         Canonical::Disk => (SHAPE_DISK, 0.0),
         Canonical::Cylinder { cut } => (SHAPE_CYLINDER, cut as f32),
         Canonical::Paraboloid { cut } => (SHAPE_PARABOLOID, cut as f32),
+        Canonical::Sine { wave } => (SHAPE_SINE, wave as f32),
     }
 }
 

@@ -93,7 +93,7 @@ impl Space<'_> {
 }
 
 fn is_open(shape: &Shape) -> bool {
-    matches!(shape, Shape::Quad { .. } | Shape::Canonical { kind: Canonical::Disk, .. })
+    matches!(shape, Shape::Quad { .. } | Shape::Canonical { kind: Canonical::Disk | Canonical::Sine { .. }, .. })
 }
 
 /// How deep a point lies below an open interface, within its outline as seen along the normal.
@@ -102,6 +102,11 @@ fn depth_below(shape: &Shape, p: DVec3) -> Option<f64> {
         Shape::Quad { center, u, v } => (*center, *u, *v, false),
         Shape::Canonical { kind: Canonical::Disk, to_world } => {
             (to_world.translation, to_world.matrix3.x_axis, to_world.matrix3.y_axis, true)
+        }
+        Shape::Canonical { kind: Canonical::Sine { wave }, to_world } => {
+            let at = to_world.inverse().transform_point3(p);
+            let depth = ((wave * at.x).sin() - at.z) * to_world.matrix3.z_axis.length();
+            return (depth > 0.0 && at.truncate().abs().max_element() <= 1.0).then_some(depth);
         }
         _ => return None,
     };

@@ -139,7 +139,7 @@ impl Estimate for Cells<'_> {
         let noise = self.judged.noise(self.mean().into_iter(), self.variance().into_iter());
         let enough = |stage: u64| {
             let side = self.side(stage - 1);
-            let cells = side * side * self.lights.len() as u64;
+            let cells = side.saturating_mul(side).saturating_mul(self.lights.len() as u64);
             goal.photons.is_some_and(|n| cells >= n)
         };
         let quiet = stage > 1 && goal.noise.is_some_and(|most| noise <= most);
