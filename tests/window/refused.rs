@@ -26,10 +26,10 @@ fn options_are_checked_before_the_display() {
         ("glass-sphere --frames 0", "--frames"),
         ("glass-sphere --frames some", "--frames"),
         ("glass-sphere --screenshot", "--screenshot"),
-        ("glass-sphere --method map", "no such method"),
-        ("glass-sphere --camera side", "camera side"),
+        ("glass-sphere --method map", "there is no method"),
+        ("glass-sphere --camera side", "no camera `side`"),
         ("glass-sphere --medium maps", "does not fill the slot medium"),
-        ("glas-sphere", "no such scene"),
+        ("glas-sphere", "glass-sphere"),
         ("", "<SCENE>"),
     ] {
         let (code, _, err) = ran(program(&format!("view {options}")).output().unwrap());
