@@ -115,7 +115,7 @@ impl Estimate for Counts<'_> {
         self.sums.chunks
     }
 
-    /// The picture, then what it tells the [`Spread`].
+    /// The picture, then what it tells the `Spread`.
     fn chunk(&self, k: u64) -> Vec<f64> {
         let parts: Vec<Vec<f64>> = (0..PARTS).map(|part| self.part(PARTS * k + part)).collect();
         let at = |pixel: usize| parts.iter().map(|part| part[pixel]).sum::<f64>() / PARTS as f64;
