@@ -103,8 +103,8 @@ fn hold(name: &str, paths: Option<PathClass>, camera: &str, each: u64, cells: u6
         about["cells.unresolved"]
     );
     assert!(both.len() >= BLOCKS / 4 && !lit.is_empty(), "{name}: too little is seen to compare");
-    // Through `main` few blocks are lit, and the total needs more photons than they.
-    let wrong = camera == "region" && !MEDIAN_ERROR.contains(&median);
+    // Through `main` few blocks are lit, and the total needs more photons than they; in a focus one block is the total.
+    let wrong = camera == "region" && lit.len() > 1 && !MEDIAN_ERROR.contains(&median);
     assert!(!wrong, "{name}: the photons' median error is {median}: change their number");
     assert!(total.abs() <= TOTAL, "{name}: total {total}");
     assert!(worst <= 1.0, "{name}: a block is {worst} times what is allowed apart");
@@ -135,6 +135,16 @@ fn on_flat_water() {
 #[test]
 fn on_the_ring() {
     hold("ring", None, "region", 80_000, 128);
+}
+
+#[test]
+fn on_a_sine_of_water() {
+    hold("sine-water", None, "region", 190_000, 64);
+}
+
+#[test]
+fn in_a_focus() {
+    hold("paraboloid", None, "region", 20_000, 32);
 }
 
 #[test]
