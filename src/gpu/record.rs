@@ -27,6 +27,15 @@ pub(super) fn buffer_barrier<'a>(b: &Barrier, buffer: &Buffer) -> vk::BufferMemo
 }
 
 pub(super) fn image_barrier<'a>(b: &Barrier, image: &Image) -> vk::ImageMemoryBarrier2<'a> {
+    barrier_of(b, image.handle, image.range())
+}
+
+/// Of an image that may be another's, as those of a swapchain are.
+pub(super) fn barrier_of<'a>(
+    b: &Barrier,
+    image: vk::Image,
+    range: vk::ImageSubresourceRange,
+) -> vk::ImageMemoryBarrier2<'a> {
     vk::ImageMemoryBarrier2::default()
         .src_stage_mask(b.from.stages)
         .src_access_mask(b.from.access)
@@ -36,8 +45,8 @@ pub(super) fn image_barrier<'a>(b: &Barrier, image: &Image) -> vk::ImageMemoryBa
         .new_layout(b.to.layout)
         .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .image(image.handle)
-        .subresource_range(image.range())
+        .image(image)
+        .subresource_range(range)
 }
 
 impl Shared {

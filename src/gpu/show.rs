@@ -11,7 +11,7 @@ use super::{
     memory::{Buffer, Format, Image},
     pipeline::{Pipeline, RasterState, Stage},
     plan::{Blend, Lifetime, Plan, Topology},
-    record::{buffer_barrier, image_barrier},
+    record::{barrier_of, buffer_barrier, image_barrier},
     screen::{Look, Screen},
     shader::{ShaderKind, Sources},
 };
@@ -70,13 +70,13 @@ pub(super) unsafe fn record(
 ) {
     let (shared, commands, target) = (&screen.shared, screen.commands, &chain.images[index]);
     let mut before: Vec<_> =
-        barrier(Access::None, Access::Color).map(|b| of_window(&b, target.image)).into_iter().collect();
+        barrier(Access::None, Access::Color).map(|b| barrier_of(&b, target.image, WHOLE)).into_iter().collect();
     if let Some(layer) = layer {
         let read = layer.history.borrow_mut().advance(Access::GraphicsSample, true);
         before.extend(read.map(|b| image_barrier(&b, layer)));
     }
     let between = |from, to| {
-        let barriers = barrier(from, to).map(|b| of_window(&b, target.image));
+        let barriers = barrier(from, to).map(|b| barrier_of(&b, target.image, WHOLE));
         shared.barriers(commands, Vec::new(), barriers.into_iter().collect());
     };
     shared.barriers(commands, Vec::new(), before);
@@ -93,20 +93,6 @@ pub(super) unsafe fn record(
             between(Access::Color, Access::Present);
         }
     }
-}
-
-fn of_window<'a>(b: &Barrier, image: vk::Image) -> vk::ImageMemoryBarrier2<'a> {
-    vk::ImageMemoryBarrier2::default()
-        .src_stage_mask(b.from.stages)
-        .src_access_mask(b.from.access)
-        .dst_stage_mask(b.to.stages)
-        .dst_access_mask(b.to.access)
-        .old_layout(b.from.layout)
-        .new_layout(b.to.layout)
-        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .image(image)
-        .subresource_range(WHOLE)
 }
 
 /// # Safety
