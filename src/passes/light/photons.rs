@@ -1,0 +1,149 @@
+//! The photon buffer, and the dispatch that fills it from one view.
+
+use super::{Emission, SIDE};
+use crate::{
+    gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
+    passes::scene::SceneBuffers,
+    scene::PathClass,
+    settings::Settings,
+};
+
+/// Invocations along one side of the dispatch's work groups.
+const GROUP: u32 = 8;
+
+/// A column of the photon buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Column {
+    /// World position on the receiver, and 1 + its object (0: no photon).
+    Hit,
+    /// RGB flux (W), and the receiver's normal.
+    Flux,
+    /// World position on the last specular surface, and how the photon ended.
+    Exit,
+    /// Direction of travel after it, and how the photon ended.
+    Direction,
+}
+
+impl Column {
+    /// The name in plans and shaders.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hit => "hit",
+            Self::Flux => "flux",
+            Self::Exit => "exit",
+            Self::Direction => "direction",
+        }
+    }
+
+    /// Positions and flux in float32; a direction loses nothing that matters in float16.
+    pub fn format(self) -> Format {
+        match self {
+            Self::Direction => Format::Rgba16f,
+            _ => Format::Rgba32f,
+        }
+    }
+}
+
+/// The photon buffer of the view at hand: columns by kind.
+#[derive(Clone, Debug)]
+pub struct Photons {
+    /// Texels a side.
+    pub side: u32,
+    columns: Vec<(Column, ImageId)>,
+}
+
+impl Photons {
+    /// The columns asked for, as images to fetch from. A column that no method declared is not there.
+    pub fn fetch(&self, wanted: &[Column]) -> Vec<(&'static str, Resource)> {
+        let named = |c: Column| match c {
+            Column::Hit => "photons_hit",
+            Column::Flux => "photons_flux",
+            Column::Exit => "photons_exit",
+            Column::Direction => "photons_direction",
+        };
+        let wanted = self.columns.iter().filter(|(c, _)| wanted.contains(c));
+        wanted.map(|&(c, image)| (named(c), Resource::Image(image))).collect()
+    }
+
+    /// Bytes a photon.
+    pub fn bytes_each(&self) -> u64 {
+        self.columns.iter().map(|(c, _)| c.format().bytes()).sum()
+    }
+}
+
+/// Adds the photon columns that `columns` names, once for all views.
+pub fn photon_buffer(plan: &mut Plan, settings: &Settings, columns: &[Column]) -> Photons {
+    let side = settings.whole(&SIDE);
+    let image = |plan: &mut Plan, c: Column| {
+        plan.image(&format!("light/photons.{}", c.name()), [side, side], c.format(), Lifetime::Frame)
+    };
+    let mut wanted = columns.to_vec();
+    wanted.sort();
+    wanted.dedup();
+    Photons { side, columns: wanted.into_iter().map(|c| (c, image(plan, c))).collect() }
+}
+
+/// Push constants of `glsl/light/sample.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+struct SamplePush {
+    size: [i32; 2],
+    light: u32,
+    view: u32,
+}
+
+/// The tracer over one view, which several passes run.
+#[derive(Clone, Copy)]
+pub struct Tracing<'a> {
+    /// The scene's buffers.
+    pub scene: &'a SceneBuffers,
+    /// The buffer of all emission views.
+    pub views: BufferId,
+    /// The path class.
+    pub class: PathClass,
+    /// The photon buffer.
+    pub photons: &'a Photons,
+    /// The view.
+    pub emission: &'a Emission,
+    /// Its place among the views.
+    pub index: usize,
+}
+
+impl Tracing<'_> {
+    /// Work groups along one side.
+    pub fn groups(&self) -> u32 {
+        self.photons.side.div_ceil(GROUP)
+    }
+
+    /// Gives a pass what the tracer reads, and dispatches it over the view.
+    pub fn dispatch(&self, pass: PassBuilder<'_>, shader: &str) {
+        let (events, reflect) = match self.class {
+            PathClass::Reflect1 => (1, 1),
+            PathClass::Transmit1 => (1, 0),
+            PathClass::Transmit2 | PathClass::All(_) => (2, 0), // `paths` refuses `all`
+        };
+        let push = SamplePush {
+            size: [self.photons.side as i32; 2],
+            light: self.emission.light as u32,
+            view: self.index as u32,
+        };
+        let pass = self.scene.lights(self.scene.tracing(pass));
+        let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
+        pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect).push(&push).dispatch(
+            shader,
+            [self.groups(), self.groups(), 1],
+            GROUP * GROUP,
+        );
+    }
+}
+
+/// Photons of one view into their columns: `light/photons`.
+pub fn photons(plan: &mut Plan, name: &str, tracing: &Tracing<'_>) {
+    let mut pass = plan.pass(name);
+    for &(column, image) in &tracing.photons.columns {
+        let binding = format!("photons_{}", column.name());
+        let define = format!("COLUMN_{}", column.name().to_uppercase());
+        pass = pass.store(&binding, image).define(&define, column.format().glsl());
+    }
+    tracing.dispatch(pass, "light/photons.comp");
+}
