@@ -129,7 +129,7 @@ impl RenderReport {
             energy: EnergyRow::new(&measured.energy, &measured.account),
             exposure_ev: exposure(&job.settings, &job.scene),
             nonfinite_pixels: nonfinite_pixels(&measured.layers),
-            warnings: outside_map(&measured.account, &job.camera).into_iter().collect(),
+            warnings: job.scene.warnings.iter().cloned().chain(outside_map(&measured.account, &job.camera)).collect(),
         }
     }
 
