@@ -111,7 +111,7 @@ fn photon_passes(
             remedy: "media are not built yet".into(),
         });
     }
-    let class = light::paths(scene, settings)?;
+    let class = light::paths(scene, settings);
     let receiver = if job.camera == "region" { &scene.region } else { &scene.extent };
     let emissions = light::emissions(scene, settings, receiver)?;
     let reason = match job.providers.surface {
@@ -128,7 +128,7 @@ fn photon_passes(
         }
         return Ok(PhotonPasses::default());
     };
-    let photons = light::photon_buffer(plan, settings, method.columns());
+    let photons = light::photon_buffer(plan, settings, class, method.columns());
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
     let mut work = methods::Job {
