@@ -13,6 +13,7 @@ use glam::{DAffine3, DVec3, Vec3};
 mod build;
 mod canonical;
 mod class;
+mod edges;
 mod error;
 mod file;
 mod format;
@@ -65,6 +66,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Sorted by name.
     pub lights: Vec<Light>,
+    /// What is no fault, but must be known to whoever reads its pictures: dielectric meshes with holes.
+    pub warnings: Vec<String>,
 }
 
 /// Where a scene came from: enough to make it again.
