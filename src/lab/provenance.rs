@@ -135,7 +135,7 @@ pub(super) fn in_force(job: &Job) -> Map<String, Value> {
         Setting::Whole(s) => settings.whole(s).into(),
         Setting::Real(s) if s.key == eye::EXPOSURE.key => exposure(settings, scene).into(),
         Setting::Real(s) => settings.real(s).into(),
-        Setting::Choice(_) => settings.text(setting).into(),
+        Setting::Choice(_) | Setting::Word(_) => settings.text(setting).into(),
     };
     renderer::all_settings().into_iter().map(|s| (s.key().to_owned(), value(s))).collect()
 }

@@ -111,7 +111,7 @@ fn photon_passes(
             remedy: "media are not built yet".into(),
         });
     }
-    let class = light::paths(scene, settings)?;
+    let class = light::paths(scene, settings);
     let receivers = extents::receivers(scene, &job.camera);
     let emissions = light::emissions(scene, settings, &receivers[0].patch)?;
     let reason = match job.providers.surface {
@@ -128,7 +128,7 @@ fn photon_passes(
         }
         return Ok(PhotonPasses::default());
     };
-    let photons = light::photon_buffer(plan, settings, method.columns());
+    let photons = light::photon_buffer(plan, settings, class, method.columns());
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
     let mut work =
