@@ -15,7 +15,7 @@ use std::io::{ErrorKind, Write};
 use super::{
     Failure,
     args::{parse_seconds, parse_set, parse_size, parse_time},
-    output::{print, say},
+    output::{self, print, say},
     progress::TruthProgress,
     signals,
 };
@@ -93,6 +93,7 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     }
     let (Some(scene), Some(out)) = (&args.scene, &args.out) else { return Ok(()) };
     let scene = Scene::load(scene, &args.set)?.at(args.time);
+    output::warn(&scene.warnings);
     let camera = scene.camera(&args.camera)?;
     let noise = args.until.or(args.photons.is_none().then_some(DEFAULT_NOISE));
     let goal = Goal { photons: args.photons, noise };

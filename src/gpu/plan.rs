@@ -107,8 +107,8 @@ pub enum Blend {
 pub struct Target {
     /// The image.
     pub image: ImageId,
-    /// The layer drawn to.
-    pub layer: u32,
+    /// The layer drawn to; `None`: every vertex names its own (`gl_Layer`).
+    pub layer: Option<u32>,
     /// Cleared to this first; else kept.
     pub clear: Option<[f32; 4]>,
     /// How fragments are joined.
@@ -388,7 +388,13 @@ impl PassBuilder<'_> {
 
     /// A colour attachment.
     pub fn target(mut self, image: ImageId, layer: u32, clear: Option<[f32; 4]>, blend: Blend) -> Self {
-        self.targets.push(Target { image, layer, clear, blend });
+        self.targets.push(Target { image, layer: Some(layer), clear, blend });
+        self
+    }
+
+    /// Draws to all layers of an image at once; each vertex says to which.
+    pub fn target_layers(mut self, image: ImageId, clear: Option<[f32; 4]>, blend: Blend) -> Self {
+        self.targets.push(Target { image, layer: None, clear, blend });
         self
     }
 

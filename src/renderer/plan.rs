@@ -122,8 +122,8 @@ fn photon_passes(
         });
     }
     let class = light::paths(scene, settings)?;
-    let receiver = if job.camera == "region" { &scene.region } else { &scene.extent };
-    let emissions = light::emissions(scene, settings, receiver)?;
+    let receivers = extents::receivers(scene, &job.camera);
+    let emissions = light::emissions(scene, settings, &receivers[0].patch)?;
     let reason = match job.providers.surface {
         None => Some("no method was asked for"),
         Some(_) if scene.lights.is_empty() => Some("there is no light"),
@@ -141,15 +141,8 @@ fn photon_passes(
     let photons = light::photon_buffer(plan, settings, method.columns());
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
-    let mut work = methods::Job {
-        plan,
-        settings,
-        receiver,
-        beyond: extents::beyond(scene, receiver),
-        everything,
-        emissions: &emissions,
-        photons: &photons,
-    };
+    let mut work =
+        methods::Job { plan, settings, receivers: &receivers, everything, emissions: &emissions, photons: &photons };
     let mut planned = method.plan(&mut work)?;
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {

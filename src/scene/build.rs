@@ -2,7 +2,7 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use super::{
-    Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source,
+    Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source, edges,
     error::SceneError,
     file::{CameraFile, Colour, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
     index::index,
@@ -52,6 +52,7 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
             "0 is plain, each EV doubles",
         )?,
         cameras: cameras(&root.key("cameras"), &file.cameras, unit)?,
+        warnings: edges::warnings(&objects, &materials),
         objects,
         materials,
         lights,

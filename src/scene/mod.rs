@@ -14,6 +14,7 @@ mod build;
 mod canonical;
 mod class;
 mod deform;
+mod edges;
 mod error;
 mod file;
 mod format;
@@ -72,6 +73,8 @@ pub struct Scene {
     /// The time, s, at which all this is so; of a scene that stands still, 0.
     pub time: f64,
     motion: Option<Arc<motion::Motion>>,
+    /// What is no fault, but must be known to whoever reads its pictures: dielectric meshes with holes.
+    pub warnings: Vec<String>,
 }
 
 /// Where a scene came from: enough to make it again.

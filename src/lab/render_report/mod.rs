@@ -129,7 +129,7 @@ impl RenderReport {
             energy: EnergyRow::new(&measured.energy, &measured.account),
             exposure_ev: exposure(&job.settings, &job.scene),
             nonfinite_pixels: nonfinite_pixels(&measured.layers),
-            warnings: outside_map(&measured.account, &job.camera).into_iter().collect(),
+            warnings: job.scene.warnings.iter().cloned().chain(outside_map(&measured.account, &job.camera)).collect(),
         }
     }
 
@@ -227,8 +227,8 @@ fn outside_map(account: &Account, camera: &str) -> Option<String> {
     let patch = if camera == "region" { "region" } else { "extent" };
     (share > OUTSIDE).then(|| {
         format!(
-            "{:.1} % of the flux that arrives at receivers falls outside the caustic map (beside its rectangle, or on another \
-             object than the region's receiver) and is not shown; \
+            "{:.1} % of the flux that arrives at receivers falls outside the caustic map (beside the rectangle on the \
+             region's receiver, or on what is no quad) and is not shown; \
              widen `[{patch}]`, such as by --set scene.{patch}.half=[U, V] (the receiver's size is the limit), \
              or turn the receiver so that its lit side, u × v, faces the light",
             100.0 * share
