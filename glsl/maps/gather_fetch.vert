@@ -4,14 +4,20 @@
 #extension GL_ARB_shader_viewport_layer_array : require
 
 // Gather `fetch` (Wyman 2008, section 4: no copy, no vertex data): an instanced draw over the photons, an instance a
-// row. Each becomes, in its receiver's layer, a point splat of fixed size whose weights sum to one over the texels it touches.
+// row, layer after layer. Each becomes, in its receiver's layer of the map, a point splat of fixed size whose weights sum
+// to one over the texels it touches.
 
 #include "maps/views.glsl"
 #include "shared/photon.glsl"
 #include "shared/splat.glsl"
 
+#ifdef LAYERS
+layout(set = 0, binding = 8) uniform sampler2DArray photons_hit;
+layout(set = 0, binding = 9) uniform sampler2DArray photons_flux;
+#else
 layout(set = 0, binding = 8) uniform sampler2D photons_hit;
 layout(set = 0, binding = 9) uniform sampler2D photons_flux;
+#endif
 
 layout(push_constant, scalar) uniform Push {
     int side;       // texels of the map
@@ -23,7 +29,12 @@ layout(location = 0) flat out vec3 splat_flux;   // W, already divided by the su
 layout(location = 1) flat out vec2 splat_centre; // texels
 
 void main() {
+#ifdef LAYERS
+    int rows = textureSize(photons_hit, 0).y;
+    ivec3 texel = ivec3(gl_VertexIndex, gl_InstanceIndex % rows, gl_InstanceIndex / rows);
+#else
     ivec2 texel = ivec2(gl_VertexIndex, gl_InstanceIndex);
+#endif
     vec4 hit = texelFetch(photons_hit, texel, 0);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside: culled
     gl_PointSize = 1.0;

@@ -16,7 +16,7 @@ mod sizes;
 
 use common::{
     gpu,
-    picture::{Picture, job_of, picture, pixels_of_map, rewritten, scene, written},
+    picture::{Picture, all_ended, job_of, picture, pixels_of_map, rewritten, scene, written},
 };
 use nephroid::{
     gpu::Gpu,
@@ -90,8 +90,7 @@ fn with_object(toml: &str, beside: &[(&str, &str)]) -> Scene {
 
 /// Counts add up, and what was valid lies in the map.
 fn balanced(picture: &Picture) {
-    let counts = picture.account.counts;
-    assert_eq!(counts[1..].iter().sum::<u64>(), counts[0], "{counts:?}");
+    all_ended(&picture.account, picture.renderer.scene().paths);
     match picture.energy.ratio {
         Some(ratio) => assert!((ratio - 1.0).abs() <= DEPOSITED, "ratio {ratio}"),
         None => assert_eq!(picture.energy.deposited_w, 0.0),

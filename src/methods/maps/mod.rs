@@ -128,8 +128,8 @@ impl Planned for PlannedMaps {
         let light = job.emissions[view].light as u32;
         let first = !std::mem::replace(&mut self.drawn, true);
         let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, light };
-        job.plan
-            .pass(&name_of("maps/gather"))
+        job.photons
+            .define(job.plan.pass(&name_of("maps/gather")))
             .with(job.photons.fetch(&[Column::Hit, Column::Flux]))
             .with([self.views()])
             .push(&push)
@@ -137,7 +137,7 @@ impl Planned for PlannedMaps {
             .draw(
                 &["maps/gather_fetch.vert", "maps/splat.frag"],
                 Topology::Points,
-                vec![Draw { vertices: n, first_vertex: 0, instances: n, first_instance: 0 }],
+                vec![Draw { vertices: n, first_vertex: 0, instances: n * job.photons.layers(), first_instance: 0 }],
             );
     }
 
