@@ -16,7 +16,8 @@ use crate::{
     view::{View, ViewData},
 };
 
-static SIDE: Whole = Whole {
+/// Texels along each side of the caustic map.
+pub static SIDE: Whole = Whole {
     key: "maps.side",
     unit: "texels",
     default: 512,

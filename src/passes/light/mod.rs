@@ -1,10 +1,12 @@
-//! Lights: their views, and the tracer `bvh` that fills photon columns from each (Wyman 2008, section 2: the photon
-//! buffer; exact intersection in place of the image-space estimate).
+//! Lights: their views, and the tracers that fill photon columns from each (Wyman 2008, section 2: the photon buffer).
 //!
-//! Cost: one dispatch of N² invocations a view, bound by traversal; 32 bytes written a photon for `maps`.
+//! Cost: one dispatch of N² invocations a view; with `bvh` bound by traversal, 32 bytes written a photon for `maps`. The
+//! image-space tracers rasterise the view up to four times first (at most 92 bytes a photon) and are bound by fetches.
 
 mod emission;
+mod images;
 mod photons;
+mod tracer;
 
 use super::PlanError;
 use crate::{
@@ -13,7 +15,9 @@ use crate::{
 };
 
 pub use emission::{Emission, emissions, view_name};
+pub use images::Bench;
 pub use photons::{Column, Photons, Tracing, photon_buffer, photons};
+pub use tracer::{BACK, TOTAL_REFLECTION, TRACER, Tracer};
 
 /// Photons a side of an emission view.
 pub static SIDE: Whole = Whole {
@@ -32,10 +36,6 @@ pub static VIEW: Choice = Choice {
     doc: "fitted: to the specular objects; shared: one view of objects and receiver for photons and map, as in the papers",
 };
 
-/// The tracer.
-pub static TRACER: Choice =
-    Choice { key: "light.tracer", default: "bvh", words: &["bvh"], doc: "bvh: exact intersection in a compute shader" };
-
 /// The path class.
 pub static PATHS: Choice = Choice {
     key: "light.paths",
@@ -45,8 +45,14 @@ pub static PATHS: Choice = Choice {
 };
 
 /// Settings of this room.
-pub static SETTINGS: &[Setting] =
-    &[Setting::Whole(&SIDE), Setting::Choice(&VIEW), Setting::Choice(&TRACER), Setting::Choice(&PATHS)];
+pub static SETTINGS: &[Setting] = &[
+    Setting::Whole(&SIDE),
+    Setting::Choice(&VIEW),
+    Setting::Choice(&TRACER),
+    Setting::Choice(&TOTAL_REFLECTION),
+    Setting::Choice(&BACK),
+    Setting::Choice(&PATHS),
+];
 
 /// The path class in force.
 pub fn paths(scene: &Scene, settings: &Settings) -> Result<PathClass, PlanError> {

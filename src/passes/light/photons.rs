@@ -1,6 +1,6 @@
 //! The photon buffer, and the dispatch that fills it from one view.
 
-use super::{Emission, SIDE};
+use super::{Emission, SIDE, Tracer};
 use crate::{
     gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
     passes::scene::SceneBuffers,
@@ -99,6 +99,8 @@ pub struct Tracing<'a> {
     pub scene: &'a SceneBuffers,
     /// The buffer of all emission views.
     pub views: BufferId,
+    /// The tracer.
+    pub tracer: &'a Tracer,
     /// The path class.
     pub class: PathClass,
     /// The photon buffer.
@@ -127,7 +129,7 @@ impl Tracing<'_> {
             light: self.emission.light as u32,
             view: self.index as u32,
         };
-        let pass = self.scene.lights(self.scene.tracing(pass));
+        let pass = self.tracer.give(self.scene.lights(self.scene.tracing(pass)), self.index);
         let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
         pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect).push(&push).dispatch(
             shader,
