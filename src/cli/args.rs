@@ -114,16 +114,7 @@ struct Choice(Option<&'static dyn Method>);
 impl JobArgs {
     /// Scene, providers and settings, checked; needs no device.
     pub fn job(&self) -> Result<Job, Failure> {
-        let (of_scene, of_settings): (Vec<_>, Vec<_>) =
-            self.set.iter().cloned().partition(|(key, _)| key.starts_with(SCENE));
-        let known = renderer::all_settings();
-        let mut settings = Settings::default();
-        for (key, value) in &of_settings {
-            settings.set(&known, key, value)?;
-        }
-        let overrides: Vec<_> =
-            of_scene.into_iter().map(|(key, value)| (key[SCENE.len()..].to_owned(), value)).collect();
-        let scene = Arc::new(Scene::load(&self.scene, &overrides)?);
+        let (scene, settings) = scene_and_settings(&self.scene, &self.set)?;
         let job = Job { scene, providers: self.providers(), settings, camera: self.camera.clone(), size: self.size };
         job.camera()?;
         Ok(job)
@@ -137,6 +128,18 @@ impl JobArgs {
             (None, surface, medium) => Providers { surface: chosen(surface), medium: chosen(medium) },
         }
     }
+}
+
+/// A scene and settings as they are typed.
+pub fn scene_and_settings(scene: &str, set: &[(String, String)]) -> Result<(Arc<Scene>, Settings), Failure> {
+    let (of_scene, of_settings): (Vec<_>, Vec<_>) = set.iter().cloned().partition(|(key, _)| key.starts_with(SCENE));
+    let known = renderer::all_settings();
+    let mut settings = Settings::default();
+    for (key, value) in &of_settings {
+        settings.set(&known, key, value)?;
+    }
+    let overrides: Vec<_> = of_scene.into_iter().map(|(key, value)| (key[SCENE.len()..].to_owned(), value)).collect();
+    Ok((Arc::new(Scene::load(scene, &overrides)?), settings))
 }
 
 /// What a key of the scene begins with.

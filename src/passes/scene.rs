@@ -6,7 +6,7 @@ use super::accel::{
 };
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
-    scene::{Camera, LightKind, Scene},
+    scene::{Camera, LightKind, Object, Scene},
 };
 
 /// Kinds of shapes, and what is defined for shaders of a scene that has them.
@@ -111,13 +111,16 @@ impl SceneBuffers {
 
 /// Draws of the instances that the camera sees.
 pub fn visible_draws(scene: &Scene, camera: &Camera, arrays: &SceneArrays) -> Vec<Draw> {
-    let seen = |instance: &Instance| {
-        let object = scene.objects.get(instance.object as usize)?;
+    draws(scene, arrays, |object| {
         let hidden = camera.hides_specular && scene.materials[object.material].is_specular();
-        (object.visible_to_camera && !hidden).then_some(())
-    };
+        object.visible_to_camera && !hidden
+    })
+}
+
+/// Draws of the instances of some objects (`glsl/eye/gbuffer.vert`).
+pub fn draws(scene: &Scene, arrays: &SceneArrays, keep: impl Fn(&Object) -> bool) -> Vec<Draw> {
     let draw = |(index, instance): (usize, &Instance)| {
-        seen(instance)?;
+        scene.objects.get(instance.object as usize).filter(|object| keep(object))?;
         let (first_vertex, vertices) = match instance.kind {
             SHAPE_QUAD => (0, QUAD_VERTICES),
             SHAPE_MESH => triangle_range(arrays, instance.detail),
