@@ -55,9 +55,10 @@ fn region_flux(gpu: &Gpu, scene: Scene) -> (Picture, f64) {
 
 /// The account alone of a scene's photons; counts and fluxes add up.
 fn counted(scene: Scene) -> Account {
+    let class = scene.paths;
     let account = common::picture::account(&gpu(), &job_of(scene, &SMALL, "region", SIZE));
-    let Account { counts, flux_w, other_paths_w, .. } = account;
-    assert_eq!(counts[1..].iter().sum::<u64>(), counts[0], "{counts:?}");
+    all_ended(&account, class);
+    let Account { flux_w, other_paths_w, .. } = account;
     let sum = flux_w[1..].iter().sum::<f64>() + other_paths_w;
     assert!((sum - flux_w[0]).abs() <= ROUNDING * flux_w[0], "{sum} W in buckets of {} W: {account:?}", flux_w[0]);
     account
