@@ -47,6 +47,21 @@ pub struct Choice {
     pub doc: &'static str,
 }
 
+/// A word of a list, or one of a family that a list can only hint at (`all:N`).
+#[derive(Debug)]
+pub struct Word {
+    /// `group.name`.
+    pub key: &'static str,
+    /// Its default.
+    pub default: &'static str,
+    /// What it may be, for a reader.
+    pub forms: &'static [&'static str],
+    /// Whether it may be this.
+    pub accepts: fn(&str) -> bool,
+    /// What it does, in a line.
+    pub doc: &'static str,
+}
+
 /// Any setting.
 #[derive(Clone, Copy, Debug)]
 pub enum Setting {
@@ -56,6 +71,8 @@ pub enum Setting {
     Real(&'static Real),
     /// One of a list of words.
     Choice(&'static Choice),
+    /// One of a family of words.
+    Word(&'static Word),
 }
 
 impl Setting {
@@ -65,6 +82,7 @@ impl Setting {
             Self::Whole(s) => s.key,
             Self::Real(s) => s.key,
             Self::Choice(s) => s.key,
+            Self::Word(s) => s.key,
         }
     }
 
@@ -73,7 +91,7 @@ impl Setting {
         match self {
             Self::Whole(s) => s.unit,
             Self::Real(s) => s.unit,
-            Self::Choice(_) => "",
+            Self::Choice(_) | Self::Word(_) => "",
         }
     }
 
@@ -83,6 +101,7 @@ impl Setting {
             Self::Whole(s) => s.default.to_string(),
             Self::Real(s) => s.default.map_or("scene".to_owned(), |v| v.to_string()),
             Self::Choice(s) => s.default.to_owned(),
+            Self::Word(s) => s.default.to_owned(),
         }
     }
 
@@ -92,6 +111,7 @@ impl Setting {
             Self::Whole(s) => format!("{} to {}", s.range.start(), s.range.end()),
             Self::Real(s) => format!("{} to {}", s.range.start(), s.range.end()),
             Self::Choice(s) => s.words.join(" | "),
+            Self::Word(s) => s.forms.join(" | "),
         }
     }
 
@@ -101,6 +121,7 @@ impl Setting {
             Self::Whole(s) => s.doc,
             Self::Real(s) => s.doc,
             Self::Choice(s) => s.doc,
+            Self::Word(s) => s.doc,
         }
     }
 
@@ -109,6 +130,7 @@ impl Setting {
             Self::Whole(s) => text.parse().is_ok_and(|v| s.range.contains(&v)),
             Self::Real(s) => text.parse().is_ok_and(|v: f64| v.is_finite() && s.range.contains(&v)),
             Self::Choice(s) => s.words.contains(&text),
+            Self::Word(s) => (s.accepts)(text),
         }
     }
 }
@@ -180,6 +202,11 @@ impl Settings {
 
     /// A word.
     pub fn choice<'s>(&'s self, setting: &'s Choice) -> &'s str {
+        self.set.get(setting.key).map_or(setting.default, String::as_str)
+    }
+
+    /// A word of a family.
+    pub fn word<'s>(&'s self, setting: &'s Word) -> &'s str {
         self.set.get(setting.key).map_or(setting.default, String::as_str)
     }
 

@@ -46,9 +46,9 @@ fn traced(scene: &Scene, columns: &[Column]) -> Traced {
     let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let emissions = light::emissions(scene, &settings, &scene.region).unwrap();
     assert_eq!(emissions.len(), 1, "one sun, one view");
-    let photons = light::photon_buffer(&mut plan, &settings, columns);
+    let class = light::paths(scene, &settings);
+    let photons = light::photon_buffer(&mut plan, &settings, class, columns);
     let views = plan.upload("light/views", &[emissions[0].view.data()]);
-    let class = light::paths(scene, &settings).unwrap();
     let (emissions, settings) = (&emissions, &settings);
     let bench = Bench { scene, arrays: &arrays, buffers: &buffers, settings, class, emissions, views };
     let tracer = Tracer::plan(&mut plan, &bench).unwrap();
@@ -85,7 +85,7 @@ fn columns_agree_with_the_scene_and_the_account() {
     assert_quiet(&gpu);
 
     let floor = scene.objects.iter().position(|o| o.name == "floor").unwrap();
-    let (mut counts, mut watts) = ([0u64; 8], 0.0);
+    let (mut counts, mut watts) = ([0u64; account::STATUSES], 0.0);
     for k in 0..SIDE * SIDE {
         let (d, status) = (point(&direction[k]), exit[k][3] as usize);
         counts[status] += 1;

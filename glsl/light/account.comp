@@ -6,45 +6,33 @@
 // float64. Flux is the mean of the bands.
 
 #include "light/sample.glsl"
+#ifdef LAYERS
+#include "light/layers.glsl"
+#include "light/tree.glsl"
+#else
 #include "light/tracer.glsl"
+#endif
 #include "capture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 struct AccountRow {
-    uint counts[PHOTON_STATUSES]; // [0]: emitted; then by status
+    uint counts[PHOTON_STATUSES]; // [0]: samples emitted; then how each, or each branch of it, ended
     uint bent;
-    float flux[PHOTON_STATUSES];  // W; [0]: emitted; then by status, on arrival
+    float flux[PHOTON_STATUSES];  // W; [0]: emitted; then by status, at the end
     float other;                  // W
-    float absorbed;               // W, of all photons but those that end absorbed
+    float absorbed;               // W, on the way
 };
 
 layout(set = 0, binding = 8, scalar) writeonly buffer Account { AccountRow data[]; } account_rows;
 
-shared uint group_status[64];
-shared uint group_bent[64];
-shared vec4 group_flux[64]; // emitted, on arrival, other, absorbed
+shared AccountRow group_rows[64];
 
 float mean(vec3 bands) {
     return (bands.r + bands.g + bands.b) / 3.0;
 }
 
-void main() {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-    uint slot = gl_LocalInvocationIndex;
-    group_status[slot] = PHOTON_NONE;
-    group_bent[slot] = 0u;
-    group_flux[slot] = vec4(0.0);
-    if (all(lessThan(texel, push.size))) {
-        Photon p = trace_photon(light_sample(texel));
-        vec3 normal = photon_normal(photon_flux_column(p).w); // as the method reads it
-        if (p.status == PHOTON_VALID && !captured(p.hit, normal, p.receiver, push.light)) p.status = PHOTON_OUTSIDE_MAP;
-        group_status[slot] = p.status;
-        group_bent[slot] = p.bent;
-        group_flux[slot] = vec4(mean(p.emitted), mean(p.flux), mean(p.other), mean(p.absorbed));
-    }
-    barrier();
-    if (slot != 0u) return;
+AccountRow empty_row() {
     AccountRow row;
     for (uint k = 0u; k < PHOTON_STATUSES; k++) {
         row.counts[k] = 0u;
@@ -53,16 +41,84 @@ void main() {
     row.bent = 0u;
     row.other = 0.0;
     row.absorbed = 0.0;
-    for (uint k = 0u; k < 64u; k++) {
-        uint status = group_status[k];
-        if (status == PHOTON_NONE) continue;
-        row.counts[0]++;
-        row.counts[status]++;
-        row.bent += group_bent[k];
-        row.flux[0] += group_flux[k].x;
-        row.flux[status] += group_flux[k].y;
-        row.other += group_flux[k].z;
-        row.absorbed += group_flux[k].w;
+    return row;
+}
+
+void book(uint status, float flux) {
+    group_rows[gl_LocalInvocationIndex].counts[status]++;
+    group_rows[gl_LocalInvocationIndex].flux[status] += flux;
+}
+
+// How a photon ended, seen by the method: the map has what arrives where it looks.
+uint status_for_method(Photon p) {
+    if (p.status != PHOTON_VALID) return p.status;
+    vec3 normal = photon_normal(photon_flux_column(p).w); // as the method reads it
+    return captured(p.hit, normal, p.receiver, push.light) ? PHOTON_VALID : PHOTON_OUTSIDE_MAP;
+}
+
+// What a photon, or the first branch of it to end, started with, and what happened since.
+void book_way(Photon p) {
+    uint slot = gl_LocalInvocationIndex;
+    float emitted = mean(p.emitted);
+    if (emitted > 0.0) book(0u, emitted);
+    group_rows[slot].bent += p.bent;
+    group_rows[slot].other += mean(p.other);
+    group_rows[slot].absorbed += mean(p.absorbed);
+}
+
+#ifdef LAYERS
+uint layer_status[LAYERS];
+float layer_mean[LAYERS]; // W
+
+void end_photon(Photon p) {
+    book_way(p);
+    uint status = status_for_method(p);
+    float flux = mean(p.flux);
+    if (p.status == PHOTON_VALID) {
+        int filled = layers_filled;
+        int layer = take_layer(sum_of_bands(p.flux));
+        if (layer == NO_LAYER) {
+            status = PHOTON_NO_LAYER;
+        } else {
+            uint next = status;
+            float next_mean = flux;
+            status = filled < LAYERS ? PHOTON_NONE : PHOTON_NO_LAYER; // of what lay there
+            flux = layer_mean[layer];
+            layer_status[layer] = next;
+            layer_mean[layer] = next_mean;
+        }
+    }
+    if (status != PHOTON_NONE) book(status, flux);
+}
+#endif
+
+void account(ivec2 texel) {
+#ifdef LAYERS
+    trace_tree(light_sample(texel));
+    for (int layer = 0; layer < layers_filled; layer++) book(layer_status[layer], layer_mean[layer]);
+#else
+    Photon p = trace_photon(light_sample(texel));
+    if (p.status == PHOTON_NONE) return;
+    book_way(p);
+    book(status_for_method(p), mean(p.flux));
+#endif
+}
+
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    group_rows[gl_LocalInvocationIndex] = empty_row();
+    if (all(lessThan(texel, push.size))) account(texel);
+    barrier();
+    if (gl_LocalInvocationIndex != 0u) return;
+    AccountRow row = empty_row();
+    for (uint slot = 0u; slot < 64u; slot++) {
+        for (uint k = 0u; k < PHOTON_STATUSES; k++) {
+            row.counts[k] += group_rows[slot].counts[k];
+            row.flux[k] += group_rows[slot].flux[k];
+        }
+        row.bent += group_rows[slot].bent;
+        row.other += group_rows[slot].other;
+        row.absorbed += group_rows[slot].absorbed;
     }
     account_rows.data[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] = row;
 }

@@ -8,7 +8,7 @@
 layout(push_constant) uniform Push {
     int side;
     float diameter;
-    uint layer;
+    uint light;
 } push;
 
 layout(location = 0) flat in vec3 splat_flux;

@@ -28,4 +28,14 @@ bool map_captures(MapView map, vec3 p, vec3 n, uint receiver, out vec2 xy01) {
     return map_project(map.view, p, n, xy01) && all(greaterThanEqual(xy01, vec2(0.0))) && all(lessThan(xy01, vec2(1.0)));
 }
 
+// The layer that takes a photon of this light, and where it lands in it; -1 if none does.
+int map_layer(vec3 p, vec3 n, uint receiver, uint light, out vec2 xy01) {
+    for (int layer = 0; layer < maps_views.data.length(); layer++) {
+        MapView map = maps_views.data[layer];
+        if ((map.light == ANY || map.light == light) && map_captures(map, p, n, receiver, xy01)) return layer;
+    }
+    xy01 = vec2(0.0);
+    return -1;
+}
+
 #endif

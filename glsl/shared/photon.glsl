@@ -4,7 +4,8 @@
 
 #include "shared/octahedral.glsl"
 
-// How a photon ended. Every emitted photon ends in exactly one; the host counts in the same order.
+// How a photon ended. Every emitted photon ends in exactly one, in class all:N each branch of it; the host counts in the
+// same order.
 const uint PHOTON_NONE = 0u; // the sample meets no specular object: nothing was emitted
 const uint PHOTON_VALID = 1u;
 const uint PHOTON_TOTAL_REFLECTION = 2u;
@@ -13,7 +14,9 @@ const uint PHOTON_BLOCKED = 4u;      // an opaque surface before the chain was c
 const uint PHOTON_ABSORBED = 5u;     // no flux left
 const uint PHOTON_BOUNCE_LIMIT = 6u; // met a further specular surface after the chain was complete
 const uint PHOTON_OUTSIDE_MAP = 7u;  // valid, but not where the method looks
-const uint PHOTON_STATUSES = 8u;
+const uint PHOTON_NO_LAYER = 8u;     // all:N: arrived, but fainter than as many others as the buffer has layers
+const uint PHOTON_FAINT = 9u;        // all:N: too small a share of its sample to be followed
+const uint PHOTON_STATUSES = 10u;
 
 // A light sample: what a tracer starts from.
 struct LightSample {

@@ -27,7 +27,7 @@ pub struct RenderArgs {
     /// Timed frames
     #[arg(long, value_name = "R", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub repeat: u32,
-    /// Time of the frame, s; no shipped scene moves yet
+    /// Time of the frame, s
     #[arg(long, value_name = "T", default_value = "0", value_parser = parse_time, allow_negative_numbers = true)]
     pub time: f64,
     /// Seed of anything random; nothing is yet
@@ -167,7 +167,7 @@ pub fn parse_seconds(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number of seconds".to_owned())
 }
 
-fn parse_time(text: &str) -> Result<f64, String> {
+pub fn parse_time(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|t: &f64| t.is_finite()).ok_or_else(|| "expected a number of seconds".to_owned())
 }
 

@@ -13,7 +13,7 @@ use clap::Args;
 use super::{
     Failure,
     args::{ListArgs, parse_seconds},
-    output::{print, say},
+    output::{print, say, warn},
     progress::TruthProgress,
     signals,
 };
@@ -61,7 +61,7 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     let pairs = images.iter().zip(&references);
     let comparisons = pairs.map(|(x, r)| lab::compare(x, r, &args.layer)).collect::<Result<Vec<_>, _>>()?;
     let report = CompareReport::new(&args.reference.display().to_string(), &comparisons);
-    report.warnings().iter().for_each(|warning| say(&format!("warning: {warning}")));
+    warn(report.warnings());
     if let (Some(folder), Some(place)) = (folder, &args.maps) {
         write_maps(folder, &args.images, &comparisons)?;
         say(&format!("written: {}", place.display()));

@@ -17,6 +17,7 @@ use crate::{
 pub fn plan(args: &PlanArgs) -> Result<(), Failure> {
     let job = args.job.job()?;
     let planned = renderer::plan(&job)?;
+    output::warn(&job.scene.warnings);
     print(&PlanReport::new(&job, &planned.plan), &args.list)
 }
 
@@ -46,7 +47,12 @@ pub fn methods(args: &ListArgs) -> Result<(), Failure> {
 pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     let Some(name) = &args.name else { return print(&ScenesReport::new(), &args.list) };
     let scene = Scene::load(name, &[])?;
-    if args.source { output::print(scene.source.text.as_bytes()) } else { print(&SceneReport::new(&scene), &args.list) }
+    if args.source {
+        return output::print(scene.source.text.as_bytes());
+    }
+    let report = SceneReport::new(&scene);
+    output::warn(report.warnings());
+    print(&report, &args.list)
 }
 
 fn print(report: &impl Report, args: &ListArgs) -> Result<(), Failure> {

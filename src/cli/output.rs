@@ -19,3 +19,8 @@ pub fn print(data: &[u8]) -> Result<(), Failure> {
 pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }
+
+/// Says what must be known, a line each.
+pub fn warn(warnings: &[String]) {
+    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+}

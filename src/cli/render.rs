@@ -11,7 +11,7 @@ use anyhow::{Context, anyhow};
 use super::{
     Failure,
     args::RenderArgs,
-    output::{print, say},
+    output::{print, say, warn},
     progress::Progress,
     signals,
 };
@@ -40,9 +40,7 @@ pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let provenance = Provenance::new(&job, &frame, gpu.info(), arguments(std::env::args_os(), "--out"));
     let attributes = provenance.attributes();
     let report = RenderReport::new(&job, &renderer, &measured, startup_ms, provenance, run);
-    for warning in report.warnings() {
-        say(&format!("warning: {warning}"));
-    }
+    warn(report.warnings());
     lab::write_outputs(&mut folder, &report, &measured.layers, lab::exposure(&job.settings, &job.scene), &attributes)?;
     for name in &args.dump {
         lab::write_dump(&mut folder, &renderer, name, &attributes)?;

@@ -17,7 +17,7 @@ use crate::{
     lab::{self, Compared, Format, Provenance, Report, Subject, TracersReport},
     methods::maps,
     passes::light::{self, SIDE, TRACER},
-    renderer::{self, Frame, Job, Providers},
+    renderer::{Frame, Job, Providers},
     whole::OutFolder,
 };
 
@@ -49,7 +49,7 @@ pub fn run(args: &TracersArgs) -> Result<(), Failure> {
         return Err(Failure::usage(anyhow!("--set {}: every tracer is run; leave it out", TRACER.key)));
     }
     let (scene, settings) = scene_and_settings(&args.scene, &args.set)?;
-    let class = light::paths(&scene, &settings).map_err(renderer::RenderError::from)?;
+    let class = light::paths(&scene, &settings);
     let job = Job { scene, providers: Providers::default(), settings, camera: "region".to_owned(), size: [1, 1] };
     let stop = signals::stop_flag()?;
     let folder = args.out.as_deref().map(OutFolder::stage).transpose()?;

@@ -7,7 +7,7 @@ use clap::Args;
 use super::{
     Failure,
     args::{JobArgs, ListArgs},
-    output::{print, say},
+    output::{print, say, warn},
     render::arguments,
 };
 use crate::{
@@ -41,6 +41,7 @@ pub struct ViewArgs {
 pub fn run(args: &ViewArgs) -> Result<(), Failure> {
     let job = args.job.job()?;
     renderer::plan(&job)?;
+    warn(&job.scene.warnings);
     let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
     let gpu = GpuOptions { device, validation: args.validation, capture: false };
     let ev = lab::exposure(&job.settings, &job.scene);

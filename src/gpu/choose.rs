@@ -185,6 +185,7 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
     require(properties.api_version >= vk::API_VERSION_1_3, "Vulkan 1.3");
     require(has12.scalar_block_layout == vk::TRUE, "scalarBlockLayout");
     require(has12.host_query_reset == vk::TRUE, "hostQueryReset");
+    require(has12.shader_output_layer == vk::TRUE, "shaderOutputLayer");
     require(has13.synchronization2 == vk::TRUE, "synchronization2");
     require(has13.dynamic_rendering == vk::TRUE, "dynamicRendering");
     require(has13.maintenance4 == vk::TRUE, "maintenance4");

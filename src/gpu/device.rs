@@ -259,7 +259,10 @@ fn create_device(instance: &ash::Instance, info: &DeviceInfo, shows: bool) -> Re
         .large_points(has(Feature::LargePoints))
         .occlusion_query_precise(has(Feature::PreciseOcclusion))
         .pipeline_statistics_query(has(Feature::Statistics));
-    let mut v12 = vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true).host_query_reset(true);
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
+        .scalar_block_layout(true)
+        .host_query_reset(true)
+        .shader_output_layer(true);
     let mut v13 =
         vk::PhysicalDeviceVulkan13Features::default().synchronization2(true).dynamic_rendering(true).maintenance4(true);
     let mut stream = vk::PhysicalDeviceTransformFeedbackFeaturesEXT::default().transform_feedback(true);

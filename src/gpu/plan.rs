@@ -22,7 +22,7 @@ pub enum Phase {
 pub enum Lifetime {
     /// Written once, kept.
     Persistent,
-    /// Written anew every frame.
+    /// Written anew every frame; of contents, whenever the scene has moved.
     Frame,
 }
 
@@ -107,8 +107,8 @@ pub enum Blend {
 pub struct Target {
     /// The image.
     pub image: ImageId,
-    /// The layer drawn to.
-    pub layer: u32,
+    /// The layer drawn to; `None`: every vertex names its own (`gl_Layer`).
+    pub layer: Option<u32>,
     /// Cleared to this first; else kept.
     pub clear: Option<[f32; 4]>,
     /// How fragments are joined.
@@ -212,6 +212,8 @@ pub struct Plan {
     pub passes: Vec<PassDecl>,
     /// Passes left out.
     pub left_out: Vec<LeftOut>,
+    /// Of a scene that moves: contents may be others at another time.
+    pub moves: bool,
 }
 
 impl Plan {
@@ -221,14 +223,24 @@ impl Plan {
         BufferId(self.buffers.len() - 1)
     }
 
-    /// Adds a buffer that holds `items` from the start.
+    /// Adds a buffer that holds `items` from the start, and others at another time where the scene moves.
     pub fn upload<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
+        let lifetime = if self.moves { Lifetime::Frame } else { Lifetime::Persistent };
+        self.hold(name, items, lifetime)
+    }
+
+    /// Adds a buffer that holds `items` whatever the time.
+    pub fn upload_once<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
+        self.hold(name, items, Lifetime::Persistent)
+    }
+
+    fn hold<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T], lifetime: Lifetime) -> BufferId {
         let content: Arc<[u8]> = bytemuck::cast_slice(items).into();
         self.buffers.push(BufferDecl {
             name: name.to_owned(),
             bytes: content.len() as u64,
             content: Some(content),
-            lifetime: Lifetime::Persistent,
+            lifetime,
         });
         BufferId(self.buffers.len() - 1)
     }
@@ -299,9 +311,10 @@ impl Plan {
         self.image_decl(image).extent
     }
 
-    /// Bytes of all buffers and images.
+    /// Bytes of all buffers and images, and of the memory through which contents change.
     pub fn bytes(&self) -> u64 {
-        self.buffers.iter().map(|b| b.bytes).sum::<u64>() + self.images.iter().map(ImageDecl::bytes).sum::<u64>()
+        let buffers = self.buffers.iter().map(|b| b.bytes).sum::<u64>();
+        buffers + self.images.iter().map(ImageDecl::bytes).sum::<u64>() + self.staging_bytes()
     }
 
     /// Bytes that a pass writes: its targets and the storage it declares as written.
@@ -375,7 +388,13 @@ impl PassBuilder<'_> {
 
     /// A colour attachment.
     pub fn target(mut self, image: ImageId, layer: u32, clear: Option<[f32; 4]>, blend: Blend) -> Self {
-        self.targets.push(Target { image, layer, clear, blend });
+        self.targets.push(Target { image, layer: Some(layer), clear, blend });
+        self
+    }
+
+    /// Draws to all layers of an image at once; each vertex says to which.
+    pub fn target_layers(mut self, image: ImageId, clear: Option<[f32; 4]>, blend: Blend) -> Self {
+        self.targets.push(Target { image, layer: None, clear, blend });
         self
     }
 

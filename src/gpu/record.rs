@@ -229,8 +229,9 @@ unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[
     let colors: Vec<_> = targets
         .iter()
         .map(|t| {
+            let image = &program.images[t.image.0];
             vk::RenderingAttachmentInfo::default()
-                .image_view(program.images[t.image.0].layer_views[t.layer as usize])
+                .image_view(t.layer.map_or(image.view, |layer| image.layer_views[layer as usize]))
                 .image_layout(Access::Color.scope().layout)
                 .load_op(load(t.clear.is_some()))
                 .store_op(vk::AttachmentStoreOp::STORE)
@@ -248,7 +249,9 @@ unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[
     let first = targets.first().map(|t| t.image).or(depth.as_ref().map(|d| d.image));
     let Some([width, height]) = first.map(|id| program.images[id.0].extent) else { return };
     let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width, height } };
-    let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colors);
+    let layered = targets.iter().filter(|t| t.layer.is_none()).map(|t| program.images[t.image.0].layers);
+    let layers = layered.min().unwrap_or(1);
+    let mut info = vk::RenderingInfo::default().render_area(area).layer_count(layers).color_attachments(&colors);
     if let Some(depth) = &depth_info {
         info = info.depth_attachment(depth);
     }

@@ -29,6 +29,7 @@ pub struct SceneReport {
     materials: Vec<MaterialRow>,
     lights: Vec<LightRow>,
     cameras: Vec<CameraRow>,
+    warnings: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -102,7 +103,13 @@ impl SceneReport {
             materials: scene.materials.iter().map(MaterialRow::new).collect(),
             lights: scene.lights.iter().map(LightRow::new).collect(),
             cameras: scene.cameras.iter().map(|(name, camera)| CameraRow::new(name, camera)).collect(),
+            warnings: scene.warnings.clone(),
         }
+    }
+
+    /// What a reader of its pictures must know.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 }
 

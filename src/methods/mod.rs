@@ -4,17 +4,15 @@
 
 pub mod maps;
 
-use glam::DVec2;
-
 use crate::{
     gpu::{Feature, ImageId, Plan, Resource},
     names::NoSuch,
     passes::{
         PlanError,
+        extents::Receiver,
         eye::SurfaceProvider,
         light::{Column, Emission, Photons},
     },
-    scene::Region,
     settings::{Setting, Settings},
     view::Extent,
 };
@@ -44,10 +42,8 @@ pub struct Job<'a> {
     pub plan: &'a mut Plan,
     /// The settings.
     pub settings: &'a Settings,
-    /// The rectangle to cover: the receiver region, or the scene's extent.
-    pub receiver: &'a Region,
-    /// How far its receiver goes on beyond the sides −u, −v and +u, +v, m.
-    pub beyond: [DVec2; 2],
+    /// The rectangles to cover: the receiver region or the scene's extent first, then what else may be seen.
+    pub receivers: &'a [Receiver],
     /// All that the scene holds.
     pub everything: &'a Extent,
     /// The emission views, in the order in which they come.

@@ -4,11 +4,21 @@ use super::light::Tracing;
 use crate::gpu::{BufferId, Lifetime, Phase, Plan, Resource};
 
 /// Statuses a photon can end in, and `emitted` in place 0 (`glsl/shared/photon.glsl`).
-pub const STATUSES: usize = 8;
+pub const STATUSES: usize = 10;
 
 /// Names of the buckets in the order of the shader's statuses.
-pub const BUCKETS: [&str; STATUSES] =
-    ["emitted", "valid", "total_internal_reflection", "missed", "blocked", "absorbed", "bounce_limit", "outside_map"];
+pub const BUCKETS: [&str; STATUSES] = [
+    "emitted",
+    "valid",
+    "total_internal_reflection",
+    "missed",
+    "blocked",
+    "absorbed",
+    "bounce_limit",
+    "outside_map",
+    "no_layer",
+    "faint",
+];
 
 /// A work group's sums (`AccountRow` of `glsl/light/account.comp`).
 #[repr(C)]
@@ -22,7 +32,10 @@ pub struct AccountRow {
     pub absorbed: f32,
 }
 
-/// Photons and their flux by how they ended; each list sums to `emitted`.
+/// Photons and their flux by how they ended.
+///
+/// The flux in all buckets and of other paths sums to `emitted`, and so do the counts, but in class `all:N`: there a
+/// sample that is emitted ends as often as it has branches, and each end is counted (a branch without flux is none).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Account {
     /// Photons by [`BUCKETS`].
@@ -64,6 +77,11 @@ impl Account {
     /// Flux of the photons that the method takes, W.
     pub fn valid_w(&self) -> f64 {
         self.flux_w[1]
+    }
+
+    /// Flux that arrives at receivers but is fainter than what the photon buffer's layers hold, W.
+    pub fn no_layer_w(&self) -> f64 {
+        self.flux_w[8]
     }
 
     /// Flux that arrives at receivers where the map is not, W.

@@ -40,15 +40,47 @@ pub fn of_region(region: &Region) -> Extent {
     corners(region.center, region.u, region.v)
 }
 
-/// How far the quad that a region lies on goes on beyond the region's sides −u, −v and +u, +v, m.
-pub fn beyond(scene: &Scene, region: &Region) -> [DVec2; 2] {
-    let Some(Shape::Quad { center, u, v }) = scene.objects.get(region.receiver).map(|o| &o.shape) else {
-        return [DVec2::INFINITY; 2];
-    };
-    let aside = region.center - *center;
-    let aside = DVec2::new(aside.dot(u.normalize_or_zero()), aside.dot(v.normalize_or_zero()));
-    let slack = DVec2::new(u.length() - region.u.length(), v.length() - region.v.length());
-    [(slack + aside).max(DVec2::ZERO), (slack - aside).max(DVec2::ZERO)]
+/// A rectangle that a method covers.
+#[derive(Clone, Debug)]
+pub struct Receiver {
+    /// It.
+    pub patch: Region,
+    /// How far the quad that it lies on goes on beyond its sides −u, −v and +u, +v, m.
+    pub beyond: [DVec2; 2],
+}
+
+impl Receiver {
+    fn new(scene: &Scene, patch: &Region) -> Self {
+        let beyond = match scene.objects.get(patch.receiver).map(|o| &o.shape) {
+            Some(Shape::Quad { center, u, v }) => {
+                let aside = patch.center - *center;
+                let aside = DVec2::new(aside.dot(u.normalize_or_zero()), aside.dot(v.normalize_or_zero()));
+                let slack = DVec2::new(u.length() - patch.u.length(), v.length() - patch.v.length());
+                [(slack + aside).max(DVec2::ZERO), (slack - aside).max(DVec2::ZERO)]
+            }
+            _ => [DVec2::INFINITY; 2],
+        };
+        Self { patch: patch.clone(), beyond }
+    }
+}
+
+/// What a camera may see lit: through `region` its rectangle alone; else the scene's extent, and every other diffuse quad
+/// that cameras see, whole.
+pub fn receivers(scene: &Scene, camera: &str) -> Vec<Receiver> {
+    if camera == "region" {
+        return vec![Receiver::new(scene, &scene.region)];
+    }
+    let others = scene.objects.iter().enumerate().filter_map(|(receiver, object)| match object.shape {
+        Shape::Quad { center, u, v }
+            if receiver != scene.extent.receiver
+                && object.visible_to_camera
+                && !scene.materials[object.material].is_specular() =>
+        {
+            Some(Region { receiver, center, u, v })
+        }
+        _ => None,
+    });
+    [scene.extent.clone()].into_iter().chain(others).map(|patch| Receiver::new(scene, &patch)).collect()
 }
 
 /// All objects that refract or reflect.

@@ -2,7 +2,7 @@
 
 use super::accel::{
     Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SINE,
-    SHAPE_SPHERE, SceneArrays,
+    SHAPE_SPHERE, SceneArrays, Triangle,
 };
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
@@ -44,14 +44,20 @@ impl SceneBuffers {
     /// Adds them to the plan with their contents.
     pub fn upload(plan: &mut Plan, scene: &Scene, arrays: &SceneArrays) -> Self {
         let any = |kind| !scene.objects.is_empty() && arrays.instances.iter().any(|i| i.kind == kind);
+        let bent = (0..scene.objects.len()).any(|object| scene.deforms(object));
+        let corners = |plan: &mut Plan, name: &str, items: &[Triangle]| match bent {
+            true => plan.upload(name, items),
+            false => plan.upload_once(name, items),
+        };
         let mesh = |plan: &mut Plan| {
-            (plan.upload("scene/triangles", &arrays.triangles), plan.upload("scene/normals", &arrays.normals))
+            let triangles = corners(plan, "scene/triangles", &arrays.triangles);
+            (triangles, corners(plan, "scene/normals", &arrays.normals))
         };
         Self {
             nodes: plan.upload("scene/nodes", &arrays.nodes),
             meshes: any(SHAPE_MESH).then(|| mesh(plan)),
             instances: plan.upload("scene/instances", &arrays.instances),
-            materials: plan.upload("scene/materials", &arrays.materials),
+            materials: plan.upload_once("scene/materials", &arrays.materials),
             lights: (!scene.lights.is_empty()).then(|| plan.upload("scene/lights", &arrays.lights)),
             kinds: KINDS.into_iter().filter(|(kind, _)| any(*kind)).collect(),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),

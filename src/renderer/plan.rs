@@ -8,7 +8,7 @@ use crate::{
     methods::{self, Method, Slot},
     passes::{
         PlanError,
-        accel::SceneArrays,
+        accel::{SceneArrays, Trees},
         account, extents,
         eye::{self, EyeLayers, EyeScene, FrameData},
         light,
@@ -61,16 +61,25 @@ pub struct Planned {
     pub photon_bytes: u64,
     /// What planning took on the host, trees included, ms.
     pub plan_ms: f64,
+    /// For another time.
+    pub(super) trees: Trees,
 }
 
 /// Plans a frame. Needs no device.
 pub fn plan(job: &Job) -> Result<Planned, RenderError> {
+    let mut trees = Trees::default();
+    let planned = plan_with(job, &mut trees)?;
+    Ok(Planned { trees, ..planned })
+}
+
+/// As [`plan`], with the trees of the same scene at another time.
+pub(super) fn plan_with(job: &Job, trees: &mut Trees) -> Result<Planned, RenderError> {
     let start = Instant::now();
     let camera = job.camera()?;
     let (scene, settings) = (&*job.scene, &job.settings);
-    let arrays = SceneArrays::build(scene).map_err(PlanError::from)?;
+    let arrays = SceneArrays::build_with(scene, trees).map_err(PlanError::from)?;
     let everything = extents::everything(scene);
-    let mut plan = Plan::default();
+    let mut plan = Plan { moves: scene.moves(), ..Plan::default() };
     let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let frame = plan.buffer("frame", size_of::<FrameData>() as u64, Lifetime::Frame);
     let photons = photon_passes(&mut plan, job, (&arrays, &buffers), &everything)?;
@@ -86,6 +95,7 @@ pub fn plan(job: &Job) -> Result<Planned, RenderError> {
         deposits: photons.provided.map(|p| p.deposits).unwrap_or_default(),
         photon_bytes: photons.bytes_each,
         plan_ms: start.elapsed().as_secs_f64() * 1e3,
+        trees: Trees::default(),
     })
 }
 
@@ -111,9 +121,9 @@ fn photon_passes(
             remedy: "media are not built yet".into(),
         });
     }
-    let class = light::paths(scene, settings)?;
-    let receiver = if job.camera == "region" { &scene.region } else { &scene.extent };
-    let emissions = light::emissions(scene, settings, receiver)?;
+    let class = light::paths(scene, settings);
+    let receivers = extents::receivers(scene, &job.camera);
+    let emissions = light::emissions(scene, settings, &receivers[0].patch)?;
     let reason = match job.providers.surface {
         None => Some("no method was asked for"),
         Some(_) if scene.lights.is_empty() => Some("there is no light"),
@@ -128,20 +138,13 @@ fn photon_passes(
         }
         return Ok(PhotonPasses::default());
     };
-    let photons = light::photon_buffer(plan, settings, method.columns());
+    let photons = light::photon_buffer(plan, settings, class, method.columns());
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
     let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views };
     let tracer = light::Tracer::plan(plan, &bench)?;
-    let mut work = methods::Job {
-        plan,
-        settings,
-        receiver,
-        beyond: extents::beyond(scene, receiver),
-        everything,
-        emissions: &emissions,
-        photons: &photons,
-    };
+    let mut work =
+        methods::Job { plan, settings, receivers: &receivers, everything, emissions: &emissions, photons: &photons };
     let mut planned = method.plan(&mut work)?;
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {

@@ -114,6 +114,20 @@ fn light_that_misses_the_map_is_said_with_the_remedy() {
 }
 
 #[test]
+fn light_without_a_layer_is_said_with_the_remedy() {
+    const SAID: &str = "has no layer in the photon buffer";
+    let of = |layers: &str| rendered(&format!("glass-sphere --set light.paths=all:8 --set light.layers={layers}"));
+    let (_folder, out, ran) = of("1");
+    assert!(ran.err.contains(SAID) && ran.err.contains("raise light.layers"), "{}", ran.err);
+    assert!(ran.out.contains(SAID), "{}", ran.out);
+    let said = result(&out)["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(SAID));
+    assert!(said && result(&out)["energy"]["flux_w"]["no_layer"].as_f64().unwrap() > 0.0);
+    let (_folder, out, ran) = of("4");
+    assert!(!ran.err.contains(SAID), "{}", ran.err);
+    assert_eq!(result(&out)["energy"]["flux_w"]["no_layer"], 0.0);
+}
+
+#[test]
 fn layers_and_provenance_are_in_the_pictures() {
     let (_folder, out, _) = rendered("null --seed 7 --set scene.exposure=1.5");
     let (layers, provenance) = exr(&out.join("image.exr"));

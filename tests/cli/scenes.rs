@@ -98,3 +98,38 @@ fn bash_takes_its_completions() {
     let Ok(parsed) = std::process::Command::new("bash").arg("-n").arg(&file).status() else { return };
     assert!(parsed.success());
 }
+
+/// A cube without its lid.
+const OPEN_CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 -1 1\nv -1 -1 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\n\
+                         f 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+
+#[test]
+fn an_open_mesh_of_glass_is_warned_of_with_the_place_of_its_hole() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("open.toml");
+    let text = nephroid("scenes bunny --source").ok().out.replace("bunny-lo.obj", "cube.obj");
+    std::fs::write(folder.path().join("cube.obj"), OPEN_CUBE).unwrap();
+    std::fs::write(&file, &text).unwrap();
+    // 1.5 m a side on the floor: the missing lid is at that height.
+    let words =
+        "`bunny` (cube.obj) is a dielectric with 1 hole, the largest 6.0000 m round about [0.0000, 1.5000, 0.0000] m";
+    let described = nephroid(&format!("scenes {} --format json", file.display())).ok();
+    assert!(described.err.contains(&format!("warning: {words}")), "{}", described.err);
+    assert!(described.json()["warnings"][0].as_str().unwrap().starts_with(words));
+    let out = folder.path().join("out");
+    let rendered = nephroid(&format!("render {} {} --out {}", file.display(), crate::SMALL, out.display())).ok();
+    assert!(rendered.err.contains(words), "{}", rendered.err);
+    let result: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("result.json")).unwrap()).expect("JSON");
+    assert!(result["warnings"][0].as_str().unwrap().starts_with(words), "{}", result["warnings"]);
+    // A mirror bounds no medium, and may be open.
+    std::fs::write(
+        &file,
+        text.replace(
+            "[materials.glass.dielectric]\nior = 1.5\nabsorption = 0.0",
+            "[materials.glass.mirror]\nreflectance = 1",
+        ),
+    )
+    .unwrap();
+    assert_eq!(nephroid(&format!("scenes {}", file.display())).ok().err, "");
+}

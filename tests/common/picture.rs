@@ -7,9 +7,9 @@ use nephroid::{
     gpu::Gpu,
     image::Layers,
     methods,
-    passes::account::Account,
+    passes::account::{Account, BUCKETS},
     renderer::{Dump, Energy, Frame, Job, Providers, Renderer, all_settings},
-    scene::{Region, Scene},
+    scene::{PathClass, Region, Scene},
     settings::Settings,
 };
 
@@ -86,6 +86,13 @@ pub fn account(gpu: &Gpu, job: &Job) -> Account {
     let account = renderer.account().expect("photons are counted");
     assert_quiet(gpu);
     account
+}
+
+/// Every photon that was emitted ended once; in class `all:N`, at least once, by one or several branches.
+pub fn all_ended(account: &Account, class: PathClass) {
+    let (emitted, ended) = (account.counts[0], account.counts[1..].iter().sum::<u64>());
+    let right = if matches!(class, PathClass::All(_)) { ended >= emitted } else { ended == emitted };
+    assert!(right, "{class}: {BUCKETS:?} {:?}", account.counts);
 }
 
 impl Picture {

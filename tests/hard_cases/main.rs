@@ -3,18 +3,24 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod interfaces;
 mod lights;
+mod meshes;
 mod nothing;
+mod pictures;
+mod powers;
 mod receivers;
+mod refused;
 mod shapes;
 mod sizes;
 
 use common::{
     gpu,
-    picture::{Picture, job_of, picture, pixels_of_map, rewritten, scene, written},
+    picture::{Picture, all_ended, job_of, picture, pixels_of_map, rewritten, scene, written},
 };
 use nephroid::{
     gpu::Gpu,
+    passes::account::Account,
     scene::{LightKind, Scene},
 };
 
@@ -47,6 +53,23 @@ fn region_flux(gpu: &Gpu, scene: Scene) -> (Picture, f64) {
     (picture, flux)
 }
 
+/// The account alone of a scene's photons; counts and fluxes add up.
+fn counted(scene: Scene) -> Account {
+    let account = common::picture::account(&gpu(), &job_of(scene, &SMALL, "region", SIZE));
+    let Account { counts, flux_w, other_paths_w, .. } = account;
+    assert_eq!(counts[1..].iter().sum::<u64>(), counts[0], "{counts:?}");
+    let sum = flux_w[1..].iter().sum::<f64>() + other_paths_w;
+    assert!((sum - flux_w[0]).abs() <= ROUNDING * flux_w[0], "{sum} W in buckets of {} W: {account:?}", flux_w[0]);
+    account
+}
+
+/// `glass-sphere` with another shape in the place of the sphere, as TOML below `[objects.ball]`, and more.
+fn shaped(shape: &str, more: &str, beside: &[(&str, &str)]) -> Scene {
+    let sphere = "[objects.ball.sphere]\ncenter = [0.0, 0.0, 0.0]\nradius = 1.0\n";
+    let text = rewritten("glass-sphere", &[(sphere, &format!("{shape}\n"))], more);
+    written(&text, beside)
+}
+
 fn main_view(gpu: &Gpu, scene: Scene) -> Picture {
     picture(gpu, &job_of(scene, &SMALL, "main", SIZE))
 }
@@ -67,8 +90,7 @@ fn with_object(toml: &str, beside: &[(&str, &str)]) -> Scene {
 
 /// Counts add up, and what was valid lies in the map.
 fn balanced(picture: &Picture) {
-    let counts = picture.account.counts;
-    assert_eq!(counts[1..].iter().sum::<u64>(), counts[0], "{counts:?}");
+    all_ended(&picture.account, picture.renderer.scene().paths);
     match picture.energy.ratio {
         Some(ratio) => assert!((ratio - 1.0).abs() <= DEPOSITED, "ratio {ratio}"),
         None => assert_eq!(picture.energy.deposited_w, 0.0),

@@ -66,3 +66,43 @@ fn an_eye_inside_the_glass_sees_glass_in_every_direction() {
         assert!(seen.layer("mask").iter().all(|m| *m == 1.0), "towards {target}");
     }
 }
+
+#[test]
+fn every_receiver_shows_what_it_would_show_alone() {
+    let gpu = gpu();
+    // The sun comes in flat: half of what the sphere bends falls on a screen behind it, half on the floor.
+    const SCREEN: &str = "
+[objects.screen]
+material = \"white\"
+[objects.screen.quad]
+center = [3.0, 0.5, 0.0]
+u = [0.0, 0.0, 2.0]
+v = [0.0, 2.0, 0.0]
+[cameras.screen.orthographic]
+position = [-9.0, 0.5, 0.0]
+target = [3.0, 0.5, 0.0]
+height = 4.0
+hides_specular = true
+";
+    let sun = [("direction = [0.0, -1.0, 0.0]", "direction = [1.0, -0.3, 0.0]")];
+    let judged =
+        [sun[0], ("receiver = \"floor\"", "receiver = \"screen\""), ("half = [1.5, 1.5]", "half = [2.0, 2.0]")];
+    let both = written(&rewritten("glass-sphere", &sun, SCREEN), &[]);
+    let alone = written(&rewritten("glass-sphere", &judged, SCREEN), &[]);
+    let seen = |scene: &Scene, camera: &str, more: &[(&str, &str)]| {
+        let set: Vec<_> = SMALL.iter().chain(more).copied().collect();
+        picture(&gpu, &job_of(scene.clone(), &set, camera, SIZE))
+    };
+    let (one, two) = (seen(&alone, "region", &[]), seen(&both, "screen", &[]));
+    assert!(one.sum("irradiance.caustic") > 10.0, "the screen is lit through the glass");
+    let apart = one.layer("irradiance.caustic").iter().zip(two.layer("irradiance.caustic"));
+    let scale = one.layer("irradiance.caustic").iter().copied().fold(0.0, f32::max);
+    let worst = apart.map(|(a, b)| f64::from((a - b).abs() / scale)).fold(0.0, f64::max);
+    assert!(worst <= ROUNDING, "the screen's light differs by {worst} of the brightest");
+    balanced(&two);
+    let region = seen(&both, "screen", &[("maps.receivers", "region")]);
+    dark(&region, "irradiance.caustic");
+    balanced(&region);
+    let lost = region.account.outside_map_w() - two.account.outside_map_w();
+    close("what one map holds and the other leaves", two.account.valid_w() - region.account.valid_w(), lost, ROUNDING);
+}

@@ -12,7 +12,10 @@ fn one_photon_is_one_texel() {
     let set = [("light.side", "1"), ("maps.side", "128"), ("maps.splat_size", "1")];
     let picture = picture(&gpu(), &job_of(scene("glass-sphere", &[]), &set, "region", SIZE));
     balanced(&picture);
-    assert_eq!(picture.account.counts, [1, 1, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(
+        (picture.account.counts[..2].to_vec(), picture.account.counts[2..].iter().sum::<u64>()),
+        (vec![1, 1], 0)
+    );
     // The one sample stands for the whole window about the sphere and goes straight through.
     close("emitted", picture.energy.emitted_w, 4.0, ROUNDING);
     close("deposited", picture.energy.deposited_w, 4.0 * 0.96 * 0.96, ROUNDING);

@@ -5,6 +5,7 @@
 //! `R`, `G`, `B` (or `Y`), so that every viewer opens it; the attribute `mainLayer` keeps its name. Provenance is one
 //! string attribute an entry, `nephroid.NAME`, UTF-8.
 
+mod guard;
 mod header;
 
 #[cfg(test)]
@@ -48,16 +49,20 @@ impl Layers {
     /// layers of their full name.
     ///
     /// # Errors
-    /// [`ImageError::Format`] if the bytes are not an EXR file, or subsampled; [`ImageError::Layer`] for names that
-    /// [`Layers::push`] refuses.
+    /// [`ImageError::Format`] if the bytes are not an EXR file, or subsampled, in several resolutions, compressed with loss,
+    /// or too few for the pixels that they announce; [`ImageError::Layer`] for names that [`Layers::push`] refuses.
     pub fn from_exr(bytes: &[u8]) -> Result<(Self, Provenance), ImageError> {
+        let chunks = exr::block::read(Cursor::new(bytes), false).map_err(format_error)?;
+        chunks.headers().iter().try_for_each(|header| guard::check(header, bytes.len()))?;
         let image = exr::image::read::read()
             .no_deep_data()
             .largest_resolution_level()
             .all_channels()
             .first_valid_layer()
             .all_attributes()
-            .from_buffered(Cursor::new(bytes))
+            // On a pool's thread, what a damaged block brings to a panic would end the process.
+            .non_parallel()
+            .from_chunks(chunks)
             .map_err(format_error)?;
         let part = &image.layer_data;
         let mut texts: BTreeMap<String, String> =

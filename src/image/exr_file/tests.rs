@@ -98,6 +98,43 @@ fn broken_files_are_errors() {
     }
 }
 
+/// Memory for the pixels of a header is asked for before the first of them is read.
+#[test]
+fn a_header_that_announces_more_than_its_file_holds_is_an_error() {
+    let mut bytes = sample().to_exr(&Provenance::new()).unwrap();
+    let window = bytes.windows(10).position(|w| w == b"dataWindow").unwrap();
+    // Its name, its type and its length, then smallest x and y, then the largest x: rows, and so blocks, stay as many.
+    let width = window + "dataWindow\0box2i\0".len() + 4 + 8;
+    for side in [0xf_ffff_u32, 0xfff_ffff] {
+        bytes[width..width + 4].copy_from_slice(&side.to_le_bytes());
+        let error = Layers::from_exr(&bytes).unwrap_err().to_string();
+        assert!(error.contains("EXR") && error.contains("announced"), "{error}");
+    }
+}
+
+/// Blocks that the decoder does not survive when they are damaged are refused whole.
+#[test]
+fn lossy_files_and_several_resolutions_are_refused() {
+    use exr::prelude::{Blocks, Compression, LineOrder, Vec2};
+    let encoded = |compression: Compression| {
+        let encoding = Encoding { compression, blocks: Blocks::Tiles(Vec2(16, 16)), line_order: LineOrder::Increasing };
+        let list = [AnyChannel::new("Y", FlatSamples::F32(vec![1.0]))].into_iter().collect();
+        let mut file = Cursor::new(Vec::new());
+        let image = Image::from_encoded_channels((1, 1), encoding, AnyChannels::sort(list));
+        image.write().non_parallel().to_buffered(&mut file).unwrap();
+        file.into_inner()
+    };
+    let error = Layers::from_exr(&encoded(Compression::B44)).unwrap_err().to_string();
+    assert!(error.contains("b44") && error.contains("ZIP"), "{error}");
+    let mut levels = encoded(Compression::ZIP16);
+    assert_eq!(Layers::from_exr(&levels).unwrap().0.width(), 1);
+    // The mode of the levels is the last byte of the value: two sides of four bytes stand before it.
+    let tiles = levels.windows(8).position(|w| w == b"tiledesc").unwrap();
+    levels[tiles + "tiledesc\0".len() + 4 + 8] = 1;
+    let error = Layers::from_exr(&levels).unwrap_err().to_string();
+    assert!(error.contains("several resolutions"), "{error}");
+}
+
 #[test]
 fn foreign_channels_become_layers_too() {
     let plane = |v: f32| FlatSamples::F32(vec![v; 4]);

@@ -9,8 +9,12 @@ use super::{Measured, Provenance, Run, devices::DeviceRow, provenance::exposure}
 use crate::{
     gpu::FrameTimes,
     image::Layers,
-    passes::account::{Account, BUCKETS},
+    passes::{
+        account::{Account, BUCKETS},
+        light::LAYERS,
+    },
     renderer::{Energy, Job, Providers, Renderer},
+    settings::Settings,
     stats,
 };
 
@@ -129,7 +133,7 @@ impl RenderReport {
             energy: EnergyRow::new(&measured.energy, &measured.account),
             exposure_ev: exposure(&job.settings, &job.scene),
             nonfinite_pixels: nonfinite_pixels(&measured.layers),
-            warnings: outside_map(&measured.account, &job.camera).into_iter().collect(),
+            warnings: job.scene.warnings.iter().cloned().chain(warnings(&measured.account, job)).collect(),
         }
     }
 
@@ -216,19 +220,39 @@ impl EnergyRow {
     }
 }
 
-/// Share of the flux arriving at receivers that may fall outside the map before it is said.
-const OUTSIDE: f64 = 0.01;
+/// Share of the flux arriving at receivers that may be missing from the map, for one reason, before it is said.
+const MISSING: f64 = 0.01;
+
+fn warnings(account: &Account, job: &Job) -> Vec<String> {
+    outside_map(account, &job.camera).into_iter().chain(no_layer(account, &job.settings)).collect()
+}
+
+/// Share of the flux that arrives at receivers. Without any light it is no number, and above nothing.
+fn of_arriving(account: &Account, flux_w: f64) -> f64 {
+    flux_w / (account.valid_w() + account.outside_map_w() + account.no_layer_w())
+}
+
+/// Says how much of the light that arrives found no layer in the photon buffer.
+fn no_layer(account: &Account, settings: &Settings) -> Option<String> {
+    let share = of_arriving(account, account.no_layer_w());
+    let layers = settings.whole(&LAYERS);
+    (share > MISSING).then(|| {
+        format!(
+            "{:.1} % of the flux that arrives at receivers has no layer in the photon buffer and is not shown: a sample of \
+             the class all:N leaves its {layers} brightest photons; raise light.layers",
+            100.0 * share
+        )
+    })
+}
 
 /// Says how much of the light that arrives at receivers the map does not hold, where it is more than a trifle.
 fn outside_map(account: &Account, camera: &str) -> Option<String> {
-    let outside = account.outside_map_w();
-    let share = outside / (account.valid_w() + outside);
-    // Without any light the share is no number, and nothing is said.
+    let share = of_arriving(account, account.outside_map_w());
     let patch = if camera == "region" { "region" } else { "extent" };
-    (share > OUTSIDE).then(|| {
+    (share > MISSING).then(|| {
         format!(
-            "{:.1} % of the flux that arrives at receivers falls outside the caustic map (beside its rectangle, or on another \
-             object than the region's receiver) and is not shown; \
+            "{:.1} % of the flux that arrives at receivers falls outside the caustic map (beside the rectangle on the \
+             region's receiver, or on what is no quad) and is not shown; \
              widen `[{patch}]`, such as by --set scene.{patch}.half=[U, V] (the receiver's size is the limit), \
              or turn the receiver so that its lit side, u × v, faces the light",
             100.0 * share

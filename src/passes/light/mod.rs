@@ -2,16 +2,18 @@
 //!
 //! Cost: one dispatch of N² invocations a view; with `bvh` bound by traversal, 32 bytes written a photon for `maps`. The
 //! image-space tracers rasterise the view up to four times first (at most 92 bytes a photon) and are bound by fetches.
+//!
+//! In class `all:N` each sample grows a tree, and the buffer has `light.layers` layers, which cost their bytes whether a
+//! sample fills them or not.
 
 mod emission;
 mod images;
 mod photons;
 mod tracer;
 
-use super::PlanError;
 use crate::{
     scene::{PathClass, Scene},
-    settings::{Choice, Setting, Settings, Whole},
+    settings::{Choice, Setting, Settings, Whole, Word},
 };
 
 pub use emission::{Emission, emissions, view_name};
@@ -37,11 +39,22 @@ pub static VIEW: Choice = Choice {
 };
 
 /// The path class.
-pub static PATHS: Choice = Choice {
+pub static PATHS: Word = Word {
     key: "light.paths",
-    default: "scene",
-    words: &["scene", "reflect-1", "transmit-1", "transmit-2"],
-    doc: "which specular chains make the caustic; scene: as the scene file says",
+    default: SCENE,
+    forms: &[SCENE, "reflect-1", "transmit-1", "transmit-2", "all:N with N from 1 to 64"],
+    accepts: |text| text == SCENE || text.parse::<PathClass>().is_ok(),
+    doc: "which specular chains make the caustic; all:N: every one of 1 to N events; scene: as the scene file says",
+};
+const SCENE: &str = "scene";
+
+/// Layers of the photon buffer in class `all:N`.
+pub static LAYERS: Whole = Whole {
+    key: "light.layers",
+    unit: "layers",
+    default: 8,
+    range: 1..=64,
+    doc: "with all:N, photons that a sample can leave: its brightest; the flux of the others is counted as no_layer",
 };
 
 /// Settings of this room.
@@ -51,18 +64,11 @@ pub static SETTINGS: &[Setting] = &[
     Setting::Choice(&TRACER),
     Setting::Choice(&TOTAL_REFLECTION),
     Setting::Choice(&BACK),
-    Setting::Choice(&PATHS),
+    Setting::Word(&PATHS),
+    Setting::Whole(&LAYERS),
 ];
 
 /// The path class in force.
-pub fn paths(scene: &Scene, settings: &Settings) -> Result<PathClass, PlanError> {
-    let class = settings.choice(&PATHS).parse().unwrap_or(scene.paths);
-    match class {
-        PathClass::All(_) => Err(PlanError::Refused {
-            what: format!("path class {class}"),
-            reason: "chains of any length are not built yet".into(),
-            remedy: "set light.paths to reflect-1, transmit-1 or transmit-2".into(),
-        }),
-        class => Ok(class),
-    }
+pub fn paths(scene: &Scene, settings: &Settings) -> PathClass {
+    settings.word(&PATHS).parse().unwrap_or(scene.paths)
 }

@@ -1,6 +1,6 @@
 //! The photon buffer, and the dispatch that fills it from one view.
 
-use super::{Emission, SIDE, Tracer};
+use super::{Emission, LAYERS, SIDE, Tracer};
 use crate::{
     gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
     passes::scene::SceneBuffers,
@@ -49,6 +49,8 @@ impl Column {
 pub struct Photons {
     /// Texels a side.
     pub side: u32,
+    /// Layers, where each sample can leave several photons: shaders then see arrays, and LAYERS.
+    layers: Option<u32>,
     columns: Vec<(Column, ImageId)>,
 }
 
@@ -65,22 +67,37 @@ impl Photons {
         wanted.map(|&(c, image)| (named(c), Resource::Image(image))).collect()
     }
 
+    /// Photons that a sample can leave.
+    pub fn layers(&self) -> u32 {
+        self.layers.unwrap_or(1)
+    }
+
+    /// Tells a shader of the layers.
+    pub fn define<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        self.layers.into_iter().fold(pass, |pass, layers| pass.define("LAYERS", layers))
+    }
+
     /// Bytes a photon.
     pub fn bytes_each(&self) -> u64 {
         self.columns.iter().map(|(c, _)| c.format().bytes()).sum()
     }
 }
 
-/// Adds the photon columns that `columns` names, once for all views.
-pub fn photon_buffer(plan: &mut Plan, settings: &Settings, columns: &[Column]) -> Photons {
+/// Adds the photon columns that `columns` names, once for all views; with layers where the class has several paths.
+pub fn photon_buffer(plan: &mut Plan, settings: &Settings, class: PathClass, columns: &[Column]) -> Photons {
     let side = settings.whole(&SIDE);
+    let layers = matches!(class, PathClass::All(_)).then(|| settings.whole(&LAYERS));
     let image = |plan: &mut Plan, c: Column| {
-        plan.image(&format!("light/photons.{}", c.name()), [side, side], c.format(), Lifetime::Frame)
+        let (name, extent) = (format!("light/photons.{}", c.name()), [side, side]);
+        match layers {
+            Some(layers) => plan.image_array(&name, extent, layers, c.format(), Lifetime::Frame),
+            None => plan.image(&name, extent, c.format(), Lifetime::Frame),
+        }
     };
     let mut wanted = columns.to_vec();
     wanted.sort();
     wanted.dedup();
-    Photons { side, columns: wanted.into_iter().map(|c| (c, image(plan, c))).collect() }
+    Photons { side, layers, columns: wanted.into_iter().map(|c| (c, image(plan, c))).collect() }
 }
 
 /// Push constants of `glsl/light/sample.glsl`.
@@ -122,7 +139,8 @@ impl Tracing<'_> {
         let (events, reflect) = match self.class {
             PathClass::Reflect1 => (1, 1),
             PathClass::Transmit1 => (1, 0),
-            PathClass::Transmit2 | PathClass::All(_) => (2, 0), // `paths` refuses `all`
+            PathClass::Transmit2 => (2, 0),
+            PathClass::All(most) => (most, 0), // of a tree only their number matters
         };
         let push = SamplePush {
             size: [self.photons.side as i32; 2],
@@ -130,6 +148,7 @@ impl Tracing<'_> {
             view: self.index as u32,
         };
         let pass = self.tracer.give(self.scene.lights(self.scene.tracing(pass)), self.index);
+        let pass = self.photons.define(pass);
         let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
         pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect).push(&push).dispatch(
             shader,
