@@ -47,8 +47,7 @@ fn what_a_plan_states_is_what_lives() {
     let gpu = gpu();
     let smallest = [("light.side", "1"), ("maps.side", "16")];
     let odd = [("light.side", "101"), ("maps.side", "99"), ("light.view", "shared")];
-    type Case<'a> = (&'a [(&'a str, &'a str)], [u32; 2]);
-    let all: [Case<'_>; 4] = [(&[], [640, 480]), (&odd, [301, 201]), (&odd, [33, 17]), (&smallest, [1, 1])];
+    let all = [(&[][..], [640, 480]), (&odd, [301, 201]), (&odd, [33, 17]), (&smallest, [1, 1])];
     for (name, _) in Scene::shipped() {
         for (set, size) in all {
             let (plan, live) = live_of(&gpu, &job_of(scene(name, &[]), set, "main", size));

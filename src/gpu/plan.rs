@@ -2,6 +2,8 @@
 //!
 //! The plan that is printed is the very list that is recorded.
 
+mod sizes;
+
 use std::sync::Arc;
 
 use super::{access::Access, memory::Format};
@@ -309,25 +311,6 @@ impl Plan {
     /// Width and height of an image.
     pub fn image_extent(&self, image: ImageId) -> [u32; 2] {
         self.image_decl(image).extent
-    }
-
-    /// Bytes of all buffers and images, and of the memory through which contents change.
-    pub fn bytes(&self) -> u64 {
-        let buffers = self.buffers.iter().map(|b| b.bytes).sum::<u64>();
-        buffers + self.images.iter().map(ImageDecl::bytes).sum::<u64>() + self.staging_bytes()
-    }
-
-    /// Bytes that a pass writes: its targets and the storage it declares as written.
-    pub fn bytes_written(&self, pass: &PassDecl) -> u64 {
-        let stored = pass.bindings.iter().filter(|b| b.access.writes()).map(|b| match b.resource {
-            Resource::Buffer(b) => self.buffers[b.0].bytes,
-            Resource::Image(i) => self.images[i.0].bytes(),
-        });
-        let drawn = match &pass.work {
-            Work::Compute { .. } => 0,
-            Work::Raster { targets, .. } => targets.iter().map(|t| self.images[t.image.0].bytes()).sum(),
-        };
-        stored.sum::<u64>() + drawn
     }
 }
 
