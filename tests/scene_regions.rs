@@ -58,6 +58,13 @@ fn flat_water_frames_the_receiver() {
 }
 
 #[test]
+fn room_frames_the_table() {
+    let scene = load("room");
+    let Shape::Quad { center, u, v } = scene.objects[scene.region.receiver].shape else { panic!("no quad") };
+    assert_eq!([scene.region.center, scene.region.u, scene.region.v], [center, u, v]);
+}
+
+#[test]
 fn sine_water_frames_whole_waves() {
     let scene = load("sine-water");
     let Some(wave) = scene.objects.iter().find_map(|object| match object.shape {
