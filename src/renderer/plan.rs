@@ -131,8 +131,15 @@ fn photon_passes(
     let photons = light::photon_buffer(plan, settings, class, method.columns());
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
-    let mut work =
-        methods::Job { plan, settings, receivers: &receivers, everything, emissions: &emissions, photons: &photons };
+    let mut work = methods::Job {
+        plan,
+        settings,
+        scene,
+        receivers: &receivers,
+        everything,
+        emissions: &emissions,
+        photons: &photons,
+    };
     let mut planned = method.plan(&mut work)?;
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {
