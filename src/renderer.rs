@@ -1,5 +1,6 @@
 //! Floor 4: plan → prepare → frame → read. Command line, lab and window are its clients.
 
+mod moving;
 mod plan;
 mod read;
 mod show;
@@ -24,6 +25,7 @@ use crate::{
     view::View,
 };
 
+pub use moving::Moved;
 pub use plan::{Planned, Providers, plan};
 pub use read::{Dump, Energy, resource};
 pub use show::LAYERS;
@@ -76,7 +78,10 @@ pub struct Renderer {
     eye: View,
     /// Where the eye was last, and in which media.
     eye_media: (DVec3, u32),
-    scene: Arc<Scene>,
+    /// At the time of the last frame.
+    job: Job,
+    trees: accel::Trees,
+    moved: Moved,
     sources: Sources,
     store: Store,
     prepare_ms: Vec<(&'static str, f64)>,
@@ -140,16 +145,16 @@ impl Renderer {
     /// Plans again for a changed job; what did not change is kept.
     pub fn replan(self, job: &Job) -> Result<Self, RenderError> {
         let Self { gpu, program, sources, store, .. } = self;
-        Self::prepare(&gpu, job, plan(job)?, sources, store, Some(program))
+        Self::prepare(&gpu, job, plan(job)?, sources, store, Some(&program))
     }
 
     fn prepare(
         gpu: &Gpu,
         job: &Job,
-        planned: Planned,
+        mut planned: Planned,
         sources: Sources,
         store: Store,
-        old: Option<Program>,
+        old: Option<&Program>,
     ) -> Result<Self, RenderError> {
         for method in job.providers.methods() {
             let lacks = lacks(method, &gpu.info().features);
@@ -168,11 +173,9 @@ impl Renderer {
         let passes_ms = start.elapsed().as_secs_f64() * 1e3;
         let prepare_ms =
             vec![("prepare/plan", planned.plan_ms), ("prepare/program", program_ms), ("prepare/passes", passes_ms)];
-        let camera = job.camera()?.clone();
-        let eye = eye::view(&camera, job.size, &extents::everything(&job.scene));
-        let eye_media = (eye.origin, accel::packed_media(&job.scene.media_of_eye(&camera, eye.origin)));
-        let (gpu, scene) = (gpu.clone(), job.scene.clone());
-        Ok(Self { gpu, planned, program, camera, eye, eye_media, scene, sources, store, prepare_ms })
+        let (camera, eye, eye_media) = seen(job)?;
+        let (gpu, job, moved, trees) = (gpu.clone(), job.clone(), Moved::default(), std::mem::take(&mut planned.trees));
+        Ok(Self { gpu, planned, program, camera, eye, eye_media, job, trees, moved, sources, store, prepare_ms })
     }
 
     /// What is recorded every frame.
@@ -195,9 +198,9 @@ impl Renderer {
         &self.gpu
     }
 
-    /// The scene.
+    /// The scene, at the time of the last frame.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.job.scene
     }
 
     /// Stage names of a frame, in order: the rows of [`FrameTimes::passes`].
@@ -205,14 +208,17 @@ impl Renderer {
         self.program.passes(Phase::Frame).map(|p| p.name.clone()).collect()
     }
 
-    /// Renders a frame and waits for it.
+    /// Renders a frame and waits for it. Where the scene moves and the time is another, it is moved before the frame's
+    /// clock starts: see [`Self::moved`].
     pub fn frame(&mut self, frame: &Frame) -> Result<FrameTimes, RenderError> {
+        self.move_to(frame.time)?;
         let data = self.frame_data(frame);
         Ok(self.program.run(Phase::Frame, &[(self.planned.frame, bytemuck::bytes_of(&data))])?)
     }
 
     /// Renders a frame and counts what each pass does, outside the timed frames.
     pub fn counters(&mut self, frame: &Frame) -> Result<Vec<(String, PassCounters)>, RenderError> {
+        self.move_to(frame.time)?;
         let data = self.frame_data(frame);
         Ok(self.program.count(Phase::Frame, &[(self.planned.frame, bytemuck::bytes_of(&data))])?)
     }
@@ -233,10 +239,18 @@ impl Renderer {
     fn frame_data(&mut self, frame: &Frame) -> FrameData {
         let eye = frame.camera.unwrap_or(self.eye);
         if self.eye_media.0 != eye.origin {
-            let media = self.scene.media_of_eye(&self.camera, eye.origin);
+            let media = self.job.scene.media_of_eye(&self.camera, eye.origin);
             self.eye_media = (eye.origin, accel::packed_media(&media));
         }
         let (time, eye_media) = (frame.time as f32, self.eye_media.1);
         FrameData { eye: eye.data(), time, index: frame.index, seed: frame.seed, eye_media }
     }
+}
+
+/// The job's camera, its view, and the media about it.
+fn seen(job: &Job) -> Result<(Camera, View, (DVec3, u32)), RenderError> {
+    let camera = job.camera()?.clone();
+    let eye = eye::view(&camera, job.size, &extents::everything(&job.scene));
+    let media = accel::packed_media(&job.scene.media_of_eye(&camera, eye.origin));
+    Ok((camera, eye, (eye.origin, media)))
 }

@@ -161,6 +161,12 @@ impl View {
         Some(self)
     }
 
+    /// The same window, with its rays beginning beyond everything.
+    pub fn of_nothing(self) -> Self {
+        let depth = self.far - self.near;
+        Self { near: self.far + depth, far: self.far + 2.0 * depth, ..self }
+    }
+
     /// An orthographic view of a rectangle (half edges `u`, `v`) along its normal, from the lit side, and of margins
     /// beyond its sides (−u, −v and +u, +v; metres). It sees all of `everything`, before and behind the rectangle.
     pub fn of_rectangle(center: DVec3, u: DVec3, v: DVec3, margins: [DVec2; 2], everything: &Extent) -> Self {

@@ -123,6 +123,11 @@ fn on_index_one() {
 }
 
 #[test]
+fn on_the_moving_sphere() {
+    hold("moving-sphere", None, "region", 76_000, 64);
+}
+
+#[test]
 fn on_the_bunny() {
     hold("bunny", None, "region", 40_000, 128);
 }

@@ -9,7 +9,7 @@ use nephroid::{
 };
 
 fn prepare(gpu: &Gpu, plan: Plan, sources: &Sources, old: Option<Program>) -> Result<Program, GpuError> {
-    Program::new(gpu, plan, sources, &Store::open(), old)
+    Program::new(gpu, plan, sources, &Store::open(), old.as_ref())
 }
 
 const HEAD: &str = "#version 460\n#extension GL_EXT_scalar_block_layout : require\n";

@@ -32,7 +32,8 @@ fn offsets_agree() {
         [("EVENTS", "2"), ("REFLECT", "0"), ("LIGHT_COUNT", "1"), ("HAS_QUADS", "1"), ("HAS_MESHES", "1")]
             .map(|(a, b)| (a.to_owned(), b.to_owned()))
             .to_vec();
-    let provided = vec![("capture.glsl".to_owned(), "maps/capture.glsl".to_owned())];
+    let provided = [("capture.glsl", "maps/capture.glsl"), ("raster_view.glsl", "eye/raster_view.glsl")]
+        .map(|(a, b)| (a.to_owned(), b.to_owned()));
     let mut seen: BTreeMap<(String, String), usize> = BTreeMap::new();
     for file in ["light/account.comp", "eye/direct.frag", "eye/gbuffer.vert"] {
         let words = Sources::default().compile(file, &defines, &provided, &Store::none()).unwrap();

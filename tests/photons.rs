@@ -9,7 +9,7 @@ use nephroid::{
     passes::{
         accel::SceneArrays,
         account::{self, Account, AccountRow},
-        light::{self, Column, Tracing},
+        light::{self, Bench, Column, Tracer, Tracing},
         scene::SceneBuffers,
     },
     renderer::all_settings,
@@ -42,13 +42,18 @@ fn traced(scene: &Scene, columns: &[Column]) -> Traced {
     let mut settings = Settings::default();
     settings.set(&all_settings(), "light.side", &SIDE.to_string()).unwrap();
     let mut plan = Plan::default();
-    let buffers = SceneBuffers::upload(&mut plan, scene, &SceneArrays::build(scene).unwrap());
+    let arrays = SceneArrays::build(scene).unwrap();
+    let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let emissions = light::emissions(scene, &settings, &scene.region).unwrap();
     assert_eq!(emissions.len(), 1, "one sun, one view");
     let class = light::paths(scene, &settings);
     let photons = light::photon_buffer(&mut plan, &settings, class, columns);
     let views = plan.upload("light/views", &[emissions[0].view.data()]);
-    let tracing = Tracing { scene: &buffers, views, class, photons: &photons, emission: &emissions[0], index: 0 };
+    let (emissions, settings) = (&emissions, &settings);
+    let bench = Bench { scene, arrays: &arrays, buffers: &buffers, settings, class, emissions, views };
+    let tracer = Tracer::plan(&mut plan, &bench).unwrap();
+    let (emission, tracer) = (&emissions[0], &tracer);
+    let tracing = Tracing { scene: &buffers, views, tracer, class, photons: &photons, emission, index: 0 };
     light::photons(&mut plan, "light/photons", &tracing);
     let account = account::account(&mut plan, "light/account", &tracing, &("takes_all.glsl", vec![]));
     Traced { plan, bytes_each: photons.bytes_each(), account }

@@ -100,6 +100,16 @@ fn mirrors_frame_their_caustic() {
     }
 }
 
+/// The scene is judged where the sphere is lowest: all its light is in the region there, and most while it comes and goes.
+#[test]
+fn moving_sphere_frames_the_middle_of_its_way() {
+    let scene = load("moving-sphere");
+    assert_eq!([scene.region.center, scene.region.u], [DVec3::NEG_Y * 1.5, DVec3::X * 1.5], "about the beam");
+    let [first, middle, last] = [0.0, 0.3, 0.6].map(|time| held(&scene.at(time)));
+    println!("moving-sphere: {first:.4} {middle:.4} {last:.4}");
+    assert!(middle >= SHARE && first > 0.5 && last > 0.5, "{first} {middle} {last}");
+}
+
 /// A glass mesh with a hierarchy over its triangles: candidates in single precision, hits in double.
 struct Glass {
     corners: Vec<[DVec3; 3]>,

@@ -5,12 +5,8 @@
 // The G-buffer: 1 + instance, primitive, and (u, v), from which any pass makes the surface again without loss.
 // Depth is linear in metres, so that it keeps its digits far from the eye.
 
+#include "raster_view.glsl"
 #include "shared/bvh.glsl"
-#include "shared/frame.glsl"
-
-#ifdef HAS_CAST
-layout(push_constant, scalar) uniform Push { ivec2 size; } push;
-#endif
 
 layout(location = 0) in vec2 shape_uv;
 layout(location = 1) in float eye_depth;
@@ -18,7 +14,7 @@ layout(location = 2) flat in uvec2 shape;
 layout(location = 0) out uvec4 seen;
 
 void main() {
-    View eye = frame.data.eye;
+    View eye = raster_view();
     float depth = eye_depth;
     uint primitive = shape.y;
     vec2 uv = shape_uv;

@@ -2,14 +2,14 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// What the eye sees, rasterised: an instance a draw, vertices pulled from the scene. A quad is two triangles, a mesh its
+// What the eye or a light sees, rasterised: an instance a draw, vertices pulled from the scene. A quad is two triangles, a mesh its
 // own; of any other shape it is the box about it, and the fragment shader intersects it exactly.
 
+#include "raster_view.glsl"
 #include "shared/bvh.glsl"
-#include "shared/frame.glsl"
 
 layout(location = 0) out vec2 shape_uv;
-layout(location = 1) out float eye_depth; // metres along the eye's forward axis
+layout(location = 1) out float eye_depth; // metres along the view's forward axis
 layout(location = 2) flat out uvec2 shape; // instance, primitive
 
 const float ABOUT = 1.001; // a shape touches its box; a rounded edge must not cut it
@@ -49,8 +49,9 @@ void main() {
     }
 #endif
     vec3 p = map_point(at.to_world, local);
-    eye_depth = dot(p - frame.data.eye.origin, frame.data.eye.forward);
-    gl_Position = view_clip(frame.data.eye, p);
+    View view = raster_view();
+    eye_depth = dot(p - view.origin, view.forward);
+    gl_Position = view_clip(view, p);
     // Depth is the fragment's. A box must not be cut where its corners reach beyond what it stands for.
     gl_Position.z = 0.5 * gl_Position.w;
 }

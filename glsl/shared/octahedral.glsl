@@ -23,4 +23,16 @@ vec3 octahedral_decode(vec2 e) {
     return v / sqrt(dot(v, v)); // the octahedron is nowhere nearer to its centre than 1/sqrt(3)
 }
 
+// In one number, not negative: 12 bits an axis, exact in a float32 (0.05 degrees; the axes exactly, so that a wall is
+// edge-on to a map above it).
+float octahedral_pack(vec3 v) {
+    uvec2 e = uvec2(round((octahedral_encode(v) * 0.5 + 0.5) * 4094.0));
+    return float(e.x * 4096u + e.y);
+}
+
+vec3 octahedral_unpack(float packed) {
+    uint bits = uint(clamp(packed, 0.0, 16777215.0));
+    return octahedral_decode(vec2(bits / 4096u, bits % 4096u) / 4094.0 * 2.0 - 1.0);
+}
+
 #endif

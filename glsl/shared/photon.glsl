@@ -46,17 +46,14 @@ vec4 photon_hit_column(Photon p) {
     return p.status == PHOTON_VALID ? vec4(p.hit, float(p.receiver + 1u)) : vec4(0.0);
 }
 
-// Column `flux`: RGB (W), and the receiver's normal, octahedral, 12 bits an axis, exact in a float32
-// (0.05 degrees; the axes exactly, so that a wall is edge-on to a map above it).
+// Column `flux`: RGB (W), and the receiver's normal.
 vec4 photon_flux_column(Photon p) {
     if (p.status != PHOTON_VALID) return vec4(0.0);
-    uvec2 e = uvec2(round((octahedral_encode(p.normal) * 0.5 + 0.5) * 4094.0));
-    return vec4(p.flux, float(e.x * 4096u + e.y));
+    return vec4(p.flux, octahedral_pack(p.normal));
 }
 
 vec3 photon_normal(float packed) {
-    uint bits = uint(clamp(packed, 0.0, 16777215.0));
-    return octahedral_decode(vec2(bits / 4096u, bits % 4096u) / 4094.0 * 2.0 - 1.0);
+    return octahedral_unpack(packed);
 }
 
 #endif

@@ -27,7 +27,7 @@ pub struct RenderArgs {
     /// Timed frames
     #[arg(long, value_name = "R", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub repeat: u32,
-    /// Time of the frame, s; no shipped scene moves yet
+    /// Time of the frame, s
     #[arg(long, value_name = "T", default_value = "0", value_parser = parse_time, allow_negative_numbers = true)]
     pub time: f64,
     /// Seed of anything random; nothing is yet
@@ -114,16 +114,7 @@ struct Choice(Option<&'static dyn Method>);
 impl JobArgs {
     /// Scene, providers and settings, checked; needs no device.
     pub fn job(&self) -> Result<Job, Failure> {
-        let (of_scene, of_settings): (Vec<_>, Vec<_>) =
-            self.set.iter().cloned().partition(|(key, _)| key.starts_with(SCENE));
-        let known = renderer::all_settings();
-        let mut settings = Settings::default();
-        for (key, value) in &of_settings {
-            settings.set(&known, key, value)?;
-        }
-        let overrides: Vec<_> =
-            of_scene.into_iter().map(|(key, value)| (key[SCENE.len()..].to_owned(), value)).collect();
-        let scene = Arc::new(Scene::load(&self.scene, &overrides)?);
+        let (scene, settings) = scene_and_settings(&self.scene, &self.set)?;
         let job = Job { scene, providers: self.providers(), settings, camera: self.camera.clone(), size: self.size };
         job.camera()?;
         Ok(job)
@@ -137,6 +128,18 @@ impl JobArgs {
             (None, surface, medium) => Providers { surface: chosen(surface), medium: chosen(medium) },
         }
     }
+}
+
+/// A scene and settings as they are typed.
+pub fn scene_and_settings(scene: &str, set: &[(String, String)]) -> Result<(Arc<Scene>, Settings), Failure> {
+    let (of_scene, of_settings): (Vec<_>, Vec<_>) = set.iter().cloned().partition(|(key, _)| key.starts_with(SCENE));
+    let known = renderer::all_settings();
+    let mut settings = Settings::default();
+    for (key, value) in &of_settings {
+        settings.set(&known, key, value)?;
+    }
+    let overrides: Vec<_> = of_scene.into_iter().map(|(key, value)| (key[SCENE.len()..].to_owned(), value)).collect();
+    Ok((Arc::new(Scene::load(scene, &overrides)?), settings))
 }
 
 /// What a key of the scene begins with.
@@ -164,7 +167,7 @@ pub fn parse_seconds(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number of seconds".to_owned())
 }
 
-fn parse_time(text: &str) -> Result<f64, String> {
+pub fn parse_time(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|t: &f64| t.is_finite()).ok_or_else(|| "expected a number of seconds".to_owned())
 }
 

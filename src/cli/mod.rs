@@ -10,6 +10,7 @@ mod output;
 mod progress;
 mod render;
 mod signals;
+mod tracers;
 mod truth;
 mod view;
 
@@ -43,6 +44,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Trace a scene's reference in float64 on the CPU, with its variance
     Truth(truth::TruthArgs),
+    /// Hold every tracer against exact intersection on a scene's light, texel by texel
+    Tracers(tracers::TracersArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -66,6 +69,7 @@ impl Cli {
             Command::View(args) => view::run(&args),
             Command::Compare(args) => compare::run(&args),
             Command::Truth(args) => truth::run(&args),
+            Command::Tracers(args) => tracers::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Doctor(args) => list::doctor(&args),

@@ -100,7 +100,7 @@ fn options_of(group: &str, job: &Job) -> String {
     now(&format!("{group}.side")).unwrap_or_else(|| "the number of triangles in the scene".to_owned())
 }
 
-fn refuse_messages(gpu: &Gpu) -> Result<(), Failure> {
+pub(super) fn refuse_messages(gpu: &Gpu) -> Result<(), Failure> {
     match gpu.take_messages().as_slice() {
         [] => Ok(()),
         messages => Err(Failure::failed(anyhow!("validation: {}", messages.join("\nvalidation: ")))),

@@ -14,7 +14,7 @@ use std::io::{ErrorKind, Write};
 
 use super::{
     Failure,
-    args::{parse_seconds, parse_set, parse_size},
+    args::{parse_seconds, parse_set, parse_size, parse_time},
     output::{self, print, say},
     progress::TruthProgress,
     signals,
@@ -61,6 +61,9 @@ pub struct TruthArgs {
     /// Stop after this time and write what there is; --resume goes on from there
     #[arg(long, value_name = "S", value_parser = parse_seconds)]
     max_seconds: Option<f64>,
+    /// Time, s: where the scene moves, it is traced as it is then
+    #[arg(long, value_name = "T", default_value = "0", value_parser = parse_time, allow_negative_numbers = true)]
+    time: f64,
     /// Seed of anything random
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
@@ -89,7 +92,7 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
         return print(format!("{truths} removed{sums}\n").as_bytes());
     }
     let (Some(scene), Some(out)) = (&args.scene, &args.out) else { return Ok(()) };
-    let scene = Scene::load(scene, &args.set)?;
+    let scene = Scene::load(scene, &args.set)?.at(args.time);
     output::warn(&scene.warnings);
     let camera = scene.camera(&args.camera)?;
     let noise = args.until.or(args.photons.is_none().then_some(DEFAULT_NOISE));

@@ -22,6 +22,7 @@ mod reflect;
 mod screen;
 mod shader;
 mod show;
+mod staging;
 mod surface;
 mod timer;
 

@@ -2,6 +2,8 @@
 //!
 //! The plan that is printed is the very list that is recorded.
 
+mod sizes;
+
 use std::sync::Arc;
 
 use super::{access::Access, memory::Format};
@@ -22,7 +24,7 @@ pub enum Phase {
 pub enum Lifetime {
     /// Written once, kept.
     Persistent,
-    /// Written anew every frame.
+    /// Written anew every frame; of contents, whenever the scene has moved.
     Frame,
 }
 
@@ -212,6 +214,8 @@ pub struct Plan {
     pub passes: Vec<PassDecl>,
     /// Passes left out.
     pub left_out: Vec<LeftOut>,
+    /// Of a scene that moves: contents may be others at another time.
+    pub moves: bool,
 }
 
 impl Plan {
@@ -221,14 +225,24 @@ impl Plan {
         BufferId(self.buffers.len() - 1)
     }
 
-    /// Adds a buffer that holds `items` from the start.
+    /// Adds a buffer that holds `items` from the start, and others at another time where the scene moves.
     pub fn upload<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
+        let lifetime = if self.moves { Lifetime::Frame } else { Lifetime::Persistent };
+        self.hold(name, items, lifetime)
+    }
+
+    /// Adds a buffer that holds `items` whatever the time.
+    pub fn upload_once<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
+        self.hold(name, items, Lifetime::Persistent)
+    }
+
+    fn hold<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T], lifetime: Lifetime) -> BufferId {
         let content: Arc<[u8]> = bytemuck::cast_slice(items).into();
         self.buffers.push(BufferDecl {
             name: name.to_owned(),
             bytes: content.len() as u64,
             content: Some(content),
-            lifetime: Lifetime::Persistent,
+            lifetime,
         });
         BufferId(self.buffers.len() - 1)
     }
@@ -297,24 +311,6 @@ impl Plan {
     /// Width and height of an image.
     pub fn image_extent(&self, image: ImageId) -> [u32; 2] {
         self.image_decl(image).extent
-    }
-
-    /// Bytes of all buffers and images.
-    pub fn bytes(&self) -> u64 {
-        self.buffers.iter().map(|b| b.bytes).sum::<u64>() + self.images.iter().map(ImageDecl::bytes).sum::<u64>()
-    }
-
-    /// Bytes that a pass writes: its targets and the storage it declares as written.
-    pub fn bytes_written(&self, pass: &PassDecl) -> u64 {
-        let stored = pass.bindings.iter().filter(|b| b.access.writes()).map(|b| match b.resource {
-            Resource::Buffer(b) => self.buffers[b.0].bytes,
-            Resource::Image(i) => self.images[i.0].bytes(),
-        });
-        let drawn = match &pass.work {
-            Work::Compute { .. } => 0,
-            Work::Raster { targets, .. } => targets.iter().map(|t| self.images[t.image.0].bytes()).sum(),
-        };
-        stored.sum::<u64>() + drawn
     }
 }
 

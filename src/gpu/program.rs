@@ -14,9 +14,10 @@ use super::{
     error::{GpuError, Named},
     memory::{Buffer, Format, Image},
     pipeline::{Pipeline, RasterState, Stage},
-    plan::{BufferId, ImageId, PassDecl, Phase, Plan, Work},
+    plan::{BufferDecl, BufferId, ImageId, PassDecl, Phase, Plan, Work},
     record::{self, buffer_barrier, image_barrier},
     shader::{ShaderKind, Sources},
+    staging::Staging,
     timer::{FrameTimes, PassCounters, Timer},
 };
 use crate::store::Store;
@@ -37,6 +38,7 @@ pub struct Program {
     pub(super) buffers: Vec<Rc<Buffer>>,
     pub(super) images: Vec<Rc<Image>>,
     pub(super) pipelines: Vec<Arc<Pipeline>>,
+    pub(super) staging: Staging,
     phases: Vec<(Phase, Vec<usize>, Timer)>,
     commands: vk::CommandBuffer,
     fence: vk::Fence,
@@ -45,17 +47,16 @@ pub struct Program {
 
 impl Program {
     /// Allocates, compiles and uploads what the plan lists; `old` gives what did not change.
-    pub fn new(gpu: &Gpu, plan: Plan, sources: &Sources, store: &Store, old: Option<Self>) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, plan: Plan, sources: &Sources, store: &Store, old: Option<&Self>) -> Result<Self, GpuError> {
         let shared = &gpu.0;
         check_memory(shared, &plan)?;
         let pipelines =
             plan.passes.iter().map(|p| prepare_pass(shared, &plan, p, sources, store)).collect::<Result<_, _>>()?;
-        let old = old.as_ref();
         let mut reused = Reused::default();
         let mut fresh = Vec::new();
         let mut buffers = Vec::new();
         for decl in &plan.buffers {
-            let kept = old.and_then(|o| o.plan.buffers.iter().position(|d| d == decl).map(|i| o.buffers[i].clone()));
+            let kept = old.and_then(|o| o.kept(decl));
             count(&mut reused, kept.is_some());
             if kept.is_none() && decl.content.is_some() {
                 fresh.push(buffers.len());
@@ -85,6 +86,7 @@ impl Program {
                 Ok((phase, passes, timer))
             })
             .collect::<Result<_, GpuError>>()?;
+        let staging = Staging::new(shared, &plan)?;
         let info = vk::CommandBufferAllocateInfo::default().command_pool(shared.pool).command_buffer_count(1);
         // SAFETY: pool and fence belong to the live device; both handles are released in `drop`.
         let (commands, fence) = unsafe {
@@ -98,11 +100,17 @@ impl Program {
             }
         };
         let mut program =
-            Self { shared: shared.clone(), plan, buffers, images, pipelines, phases, commands, fence, reused };
+            Self { shared: shared.clone(), plan, buffers, images, pipelines, staging, phases, commands, fence, reused };
         for index in fresh {
             program.upload(index)?;
         }
         Ok(program)
+    }
+
+    /// The buffer that is as declared and holds what is declared.
+    fn kept(&self, decl: &BufferDecl) -> Option<Rc<Buffer>> {
+        let index = self.plan.buffers.iter().position(|d| d == decl)?;
+        self.staging.is_settled(index).then(|| self.buffers[index].clone())
     }
 
     /// The plan, as recorded.
@@ -193,16 +201,17 @@ impl Program {
 
     fn execute(&mut self, phase: Phase, updates: &[(BufferId, &[u8])], counting: bool) -> Result<FrameTimes, GpuError> {
         let shared = self.shared.clone();
-        let (passes, timer) = self.phase(phase);
         if let Some(capture) = &shared.capture {
             capture.start();
         }
         let start = Instant::now();
-        timer.reset();
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the command buffer is not pending: every run waits for its fence.
         unsafe {
             shared.device.begin_command_buffer(self.commands, &begin).named("vkBeginCommandBuffer")?;
+            self.copy_waiting();
+            let (passes, timer) = self.phase(phase);
+            timer.reset();
             record::updates(self, updates);
             for (slot, &index) in passes.iter().enumerate() {
                 record::pass(self, index, slot, timer, counting);

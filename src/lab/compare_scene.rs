@@ -12,6 +12,7 @@ const MOST_NAMED: usize = 4;
 /// Names the values of the scene that differ, those of the first file before those of the second.
 pub fn difference(image: &Provenance, reference: &Provenance) -> String {
     let [ours, theirs] = [image, reference].map(values);
+    let [now, then] = [image, reference].map(|about| about.get("time_s").map_or("0", String::as_str));
     let mut keys: Vec<&String> = ours.keys().chain(theirs.keys()).collect();
     keys.sort();
     keys.dedup();
@@ -22,6 +23,7 @@ pub fn difference(image: &Provenance, reference: &Provenance) -> String {
         .map(|key| format!("{key} is {} there, {} here", of(&theirs, key), of(&ours, key)))
         .collect();
     match differ.len() {
+        0 if now.parse::<f64>() != then.parse::<f64>() => format!("its time is {then} s there, {now} s here"),
         0 => "a mesh file has changed".to_owned(),
         few if few <= MOST_NAMED => differ.join("; "),
         many => format!("{}; and {} more", differ[..MOST_NAMED].join("; "), many - MOST_NAMED),

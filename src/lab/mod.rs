@@ -2,6 +2,7 @@
 //! never time anything.
 
 mod catalogue;
+mod colour_bar;
 mod compare;
 mod compare_error;
 mod compare_maps;
@@ -20,6 +21,7 @@ mod render_report;
 mod report;
 mod scene_report;
 mod table;
+mod tracers;
 
 pub use catalogue::{MethodsReport, ScenesReport};
 pub use compare::{Comparison, Constants, MEASURES, compare};
@@ -38,3 +40,4 @@ pub use render_report::RenderReport;
 pub use report::{Format, Report};
 pub use scene_report::SceneReport;
 pub use table::{Cell, Table};
+pub use tracers::{Compared, Figures, Spread, Subject, TracersReport, Verdict, compare_tracers, tracer_map};

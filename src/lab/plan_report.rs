@@ -193,6 +193,6 @@ impl Report for PlanReport {
     }
 
     fn notes(&self) -> Vec<String> {
-        vec![format!("resources: {} bytes in all", self.resource_bytes)]
+        vec![format!("resources: {} bytes in all, before a device pads its images", self.resource_bytes)]
     }
 }

@@ -68,6 +68,7 @@ impl Run {
 impl Provenance {
     /// `arguments` without anything that names the output.
     pub fn new(job: &Job, frame: &Frame, device: &DeviceInfo, arguments: Vec<String>) -> Self {
+        let scene = job.scene.at(frame.time);
         let commit = env!("NEPHROID_COMMIT");
         let clean = commit.strip_suffix("-dirty");
         Self {
@@ -78,11 +79,11 @@ impl Provenance {
             device: device.into(),
             cpu: cpu(),
             os: os(),
-            scene: SceneSource::new(&job.scene),
+            scene: SceneSource::new(&scene),
             camera: job.camera.clone(),
             size: job.size,
             settings: in_force(job),
-            e0: bare_irradiance(&job.scene),
+            e0: bare_irradiance(&scene),
             time_s: frame.time,
             seed: frame.seed,
             arguments,

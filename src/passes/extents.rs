@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Points and spheres of one object: spheres exact, meshes by their vertices, the rest by what holds them.
-fn of_object(object: &Object) -> Extent {
+pub fn of_object(object: &Object) -> Extent {
     match &object.shape {
         Shape::Sphere { center, radius } => Extent { points: vec![], spheres: vec![(*center, *radius)] },
         Shape::Quad { center, u, v } => corners(*center, *u, *v),
@@ -20,6 +20,15 @@ fn of_object(object: &Object) -> Extent {
             Extent { points: used.map(|p| to_world.transform_point3(p.as_dvec3())).collect(), spheres: vec![] }
         }
     }
+}
+
+/// Points on an object's surface that show where it lies: of a sphere where its axes meet it.
+pub fn points_on(object: &Object) -> Vec<DVec3> {
+    let extent = of_object(object);
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    let poles =
+        extent.spheres.iter().flat_map(|&(center, radius)| axes.clone().map(move |axis| center + radius * axis));
+    extent.points.iter().copied().chain(poles).collect()
 }
 
 fn corners(center: DVec3, u: DVec3, v: DVec3) -> Extent {
@@ -77,6 +86,11 @@ pub fn receivers(scene: &Scene, camera: &str) -> Vec<Receiver> {
 /// All objects that refract or reflect.
 pub fn specular(scene: &Scene) -> Extent {
     objects(scene, |o| scene.materials[o.material].is_specular())
+}
+
+/// All objects that receive.
+pub fn diffuse(scene: &Scene) -> Extent {
+    objects(scene, |o| !scene.materials[o.material].is_specular())
 }
 
 /// All objects.

@@ -208,7 +208,8 @@ fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>) -> ImageId {
     let seen = plan.image("eye/gbuffer", extent, Format::Rgba32u, Lifetime::Frame);
     let depth = plan.image("eye/depth", extent, Format::Depth32f, Lifetime::Frame);
     let draws = visible_draws(from.scene, from.camera, from.arrays);
-    let mut pass = from.buffers.vertices(plan.pass("eye/gbuffer")).read("frame", from.frame);
+    let pass = plan.pass("eye/gbuffer").provide("raster_view.glsl", "eye/raster_view.glsl");
+    let mut pass = from.buffers.vertices(pass).read("frame", from.frame);
     if from.buffers.is_cast() {
         pass = pass.push(&extent.map(|s| s as i32)); // rays go through the pixels
     }

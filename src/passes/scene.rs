@@ -2,11 +2,11 @@
 
 use super::accel::{
     Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SINE,
-    SHAPE_SPHERE, SceneArrays,
+    SHAPE_SPHERE, SceneArrays, Triangle,
 };
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
-    scene::{Camera, LightKind, Scene},
+    scene::{Camera, LightKind, Object, Scene},
 };
 
 /// Kinds of shapes, and what is defined for shaders of a scene that has them.
@@ -44,14 +44,20 @@ impl SceneBuffers {
     /// Adds them to the plan with their contents.
     pub fn upload(plan: &mut Plan, scene: &Scene, arrays: &SceneArrays) -> Self {
         let any = |kind| !scene.objects.is_empty() && arrays.instances.iter().any(|i| i.kind == kind);
+        let bent = (0..scene.objects.len()).any(|object| scene.deforms(object));
+        let corners = |plan: &mut Plan, name: &str, items: &[Triangle]| match bent {
+            true => plan.upload(name, items),
+            false => plan.upload_once(name, items),
+        };
         let mesh = |plan: &mut Plan| {
-            (plan.upload("scene/triangles", &arrays.triangles), plan.upload("scene/normals", &arrays.normals))
+            let triangles = corners(plan, "scene/triangles", &arrays.triangles);
+            (triangles, corners(plan, "scene/normals", &arrays.normals))
         };
         Self {
             nodes: plan.upload("scene/nodes", &arrays.nodes),
             meshes: any(SHAPE_MESH).then(|| mesh(plan)),
             instances: plan.upload("scene/instances", &arrays.instances),
-            materials: plan.upload("scene/materials", &arrays.materials),
+            materials: plan.upload_once("scene/materials", &arrays.materials),
             lights: (!scene.lights.is_empty()).then(|| plan.upload("scene/lights", &arrays.lights)),
             kinds: KINDS.into_iter().filter(|(kind, _)| any(*kind)).collect(),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
@@ -105,13 +111,16 @@ impl SceneBuffers {
 
 /// Draws of the instances that the camera sees.
 pub fn visible_draws(scene: &Scene, camera: &Camera, arrays: &SceneArrays) -> Vec<Draw> {
-    let seen = |instance: &Instance| {
-        let object = scene.objects.get(instance.object as usize)?;
+    draws(scene, arrays, |object| {
         let hidden = camera.hides_specular && scene.materials[object.material].is_specular();
-        (object.visible_to_camera && !hidden).then_some(())
-    };
+        object.visible_to_camera && !hidden
+    })
+}
+
+/// Draws of the instances of some objects (`glsl/eye/gbuffer.vert`).
+pub fn draws(scene: &Scene, arrays: &SceneArrays, keep: impl Fn(&Object) -> bool) -> Vec<Draw> {
     let draw = |(index, instance): (usize, &Instance)| {
-        seen(instance)?;
+        scene.objects.get(instance.object as usize).filter(|object| keep(object))?;
         let (first_vertex, vertices) = match instance.kind {
             SHAPE_QUAD => (0, QUAD_VERTICES),
             SHAPE_MESH => triangle_range(arrays, instance.detail),

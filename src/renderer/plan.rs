@@ -4,11 +4,11 @@ use std::time::Instant;
 
 use super::{Job, RenderError};
 use crate::{
-    gpu::{BufferId, ImageId, Lifetime, Plan},
+    gpu::{BufferId, ImageId, Lifetime, Phase, Plan},
     methods::{self, Method, Slot},
     passes::{
         PlanError,
-        accel::SceneArrays,
+        accel::{SceneArrays, Trees},
         account, extents,
         eye::{self, EyeLayers, EyeScene, FrameData},
         light,
@@ -61,19 +61,28 @@ pub struct Planned {
     pub photon_bytes: u64,
     /// What planning took on the host, trees included, ms.
     pub plan_ms: f64,
+    /// For another time.
+    pub(super) trees: Trees,
 }
 
 /// Plans a frame. Needs no device.
 pub fn plan(job: &Job) -> Result<Planned, RenderError> {
+    let mut trees = Trees::default();
+    let planned = plan_with(job, &mut trees)?;
+    Ok(Planned { trees, ..planned })
+}
+
+/// As [`plan`], with the trees of the same scene at another time.
+pub(super) fn plan_with(job: &Job, trees: &mut Trees) -> Result<Planned, RenderError> {
     let start = Instant::now();
     let camera = job.camera()?;
     let (scene, settings) = (&*job.scene, &job.settings);
-    let arrays = SceneArrays::build(scene).map_err(PlanError::from)?;
+    let arrays = SceneArrays::build_with(scene, trees).map_err(PlanError::from)?;
     let everything = extents::everything(scene);
-    let mut plan = Plan::default();
+    let mut plan = Plan { moves: scene.moves(), ..Plan::default() };
     let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let frame = plan.buffer("frame", size_of::<FrameData>() as u64, Lifetime::Frame);
-    let photons = photon_passes(&mut plan, job, &buffers, &everything)?;
+    let photons = photon_passes(&mut plan, job, (&arrays, &buffers), &everything)?;
     let samples = job.eye_samples();
     let from = EyeScene { scene, arrays: &arrays, buffers: &buffers, frame, camera, size: job.size, samples };
     let provided = photons.provided.as_ref().and_then(|p| p.surface.as_ref());
@@ -86,6 +95,7 @@ pub fn plan(job: &Job) -> Result<Planned, RenderError> {
         deposits: photons.provided.map(|p| p.deposits).unwrap_or_default(),
         photon_bytes: photons.bytes_each,
         plan_ms: start.elapsed().as_secs_f64() * 1e3,
+        trees: Trees::default(),
     })
 }
 
@@ -100,7 +110,7 @@ struct PhotonPasses {
 fn photon_passes(
     plan: &mut Plan,
     job: &Job,
-    buffers: &SceneBuffers,
+    (arrays, buffers): (&SceneArrays, &SceneBuffers),
     everything: &Extent,
 ) -> Result<PhotonPasses, PlanError> {
     let (scene, settings) = (&*job.scene, &job.settings);
@@ -131,6 +141,8 @@ fn photon_passes(
     let photons = light::photon_buffer(plan, settings, class, method.columns());
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
+    let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views };
+    let tracer = light::Tracer::plan(plan, &bench)?;
     let mut work = methods::Job {
         plan,
         settings,
@@ -144,9 +156,12 @@ fn photon_passes(
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {
         let name_of = |base: &str| light::view_name(base, scene, &emissions, index);
-        let tracing = light::Tracing { scene: buffers, views, class, photons: &photons, emission, index };
+        let tracing =
+            light::Tracing { scene: buffers, views, tracer: &tracer, class, photons: &photons, emission, index };
+        tracer.images(work.plan, &bench, Phase::Frame, index);
         light::photons(work.plan, &name_of("light/photons"), &tracing);
         planned.gather(&mut work, index, &name_of);
+        tracer.images(work.plan, &bench, Phase::Account, index);
         let name = name_of("light/account");
         accounts.push(account::account(work.plan, &name, &tracing, &planned.capture()));
     }

@@ -1,14 +1,16 @@
 //! The checked scene from the file's tables.
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use super::{
     Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source, edges,
     error::SceneError,
-    file::{CameraFile, Colour, Floats, MaterialFile, SceneFile},
+    file::{CameraFile, Colour, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
     index::index,
     light::light,
     load::Files,
     locate::Key,
+    motion::Motion,
+    motion_files,
     object::{Meshes, object},
     patch,
 };
@@ -54,9 +56,34 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
         objects,
         materials,
         lights,
+        time: 0.0,
+        motion: None,
     };
     scene.cameras.insert("region".to_owned(), patch::camera(&scene));
-    Ok(scene)
+    scene.motion = motion(&scene, &file.objects, &file.lights, root, unit)?.map(Arc::new);
+    Ok(scene.at(0.0))
+}
+
+/// How it moves, if anything does.
+fn motion(
+    scene: &Scene,
+    objects: &BTreeMap<String, ObjectFile>,
+    lights: &BTreeMap<String, LightFile>,
+    root: &Key,
+    unit: f64,
+) -> Result<Option<Motion>, SceneError> {
+    // Both are in the order of their names, as the maps are.
+    let mut motion = Motion { objects: Vec::new(), lights: Vec::new(), hash: scene.source.hash.clone() };
+    for (index, (object, file)) in scene.objects.iter().zip(objects.values()).enumerate() {
+        let key = root.key("objects").key(&object.name);
+        let moved = motion_files::object(&key, object, file, index == scene.region.receiver, unit)?;
+        motion.objects.extend(moved.map(|moved| (index, moved)));
+    }
+    for (index, (light, file)) in scene.lights.iter().zip(lights.values()).enumerate() {
+        let moved = motion_files::light(&root.key("lights").key(&light.name), light, file, unit)?;
+        motion.lights.extend(moved.map(|moved| (index, moved)));
+    }
+    Ok((!motion.objects.is_empty() || !motion.lights.is_empty()).then_some(motion))
 }
 
 /// One thing for each table under `kind`, in the order of their names.

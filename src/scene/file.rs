@@ -6,7 +6,10 @@ use serde::{
     de::{Error, IgnoredAny, SeqAccess, Unexpected, Visitor},
 };
 
-use super::index::IndexFile;
+use super::{
+    index::IndexFile,
+    motion_files::{LightMotionFile, ObjectMotionFile},
+};
 
 /// The one version there is.
 pub const VERSION: i64 = 1;
@@ -95,6 +98,7 @@ pub struct ObjectFile {
     pub paraboloid: Option<ParaboloidFile>,
     pub sine: Option<SineFile>,
     pub mesh: Option<MeshFile>,
+    pub motion: Option<ObjectMotionFile>,
 }
 
 #[derive(Deserialize)]
@@ -216,6 +220,7 @@ pub struct LightFile {
     pub directional: Option<DirectionalFile>,
     pub point: Option<PointFile>,
     pub spot: Option<SpotFile>,
+    pub motion: Option<LightMotionFile>,
 }
 
 #[derive(Deserialize)]

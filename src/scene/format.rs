@@ -51,9 +51,10 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
             "paraboloid",
             "sine",
             "mesh",
+            "motion",
         ],
         ["materials", _] => &["diffuse", "dielectric", "mirror", "conductor"],
-        ["lights", _] => &["directional", "point", "spot"],
+        ["lights", _] => &["directional", "point", "spot", "motion"],
         ["cameras", _, "pinhole"] => &["position", "target", "up", "hides_specular", "fov_y"],
         ["cameras", _, "orthographic"] => &["position", "target", "up", "hides_specular", "height", "width"],
         ["objects", _, "sphere"] => &["center", "radius"],
@@ -64,10 +65,15 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _, "paraboloid"] => &["vertex", "axis", "focal_length", "rim", "from", "middle"],
         ["objects", _, "sine"] => &["center", "u", "v", "amplitude", "wavelength"],
         ["objects", _, "mesh"] => &["file", "fit", "center", "rotate"],
+        ["objects", _, "motion"] => &["position", "rotate", "scale", "twist", "bend", "wave", "period"],
+        ["objects", _, "motion", "twist"] => &["axis", "angle"],
+        ["objects", _, "motion", "bend"] => &["along", "towards", "angle"],
+        ["objects", _, "motion", "wave"] => &["along", "towards", "amplitude", "wavelength", "speed"],
         ["materials", _, "diffuse"] => &["albedo"],
         ["materials", _, "dielectric"] => &["ior", "absorption"],
         ["materials", _, "mirror"] => &["reflectance"],
         ["materials", _, "conductor"] => &["eta", "k"],
+        ["lights", _, "motion"] => &["position", "direction", "irradiance", "intensity", "period"],
         ["lights", _, "directional"] => &["direction", "irradiance"],
         ["lights", _, "point"] => &["position", "intensity"],
         ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "outer"],
@@ -80,7 +86,7 @@ mod tests {
     use serde::Deserialize;
 
     use super::keys;
-    use crate::scene::file;
+    use crate::scene::{file, motion_files};
 
     /// The keys that the deserialiser names when it meets one that it does not know.
     fn known<T: for<'de> Deserialize<'de>>() -> Vec<String> {
@@ -105,6 +111,11 @@ mod tests {
         assert_eq!(keys(&["objects", "", "paraboloid"]), known::<file::ParaboloidFile>());
         assert_eq!(keys(&["objects", "", "sine"]), known::<file::SineFile>());
         assert_eq!(keys(&["objects", "", "mesh"]), known::<file::MeshFile>());
+        assert_eq!(keys(&["objects", "", "motion"]), known::<motion_files::ObjectMotionFile>());
+        assert_eq!(keys(&["objects", "", "motion", "twist"]), known::<motion_files::TwistFile>());
+        assert_eq!(keys(&["objects", "", "motion", "bend"]), known::<motion_files::BendFile>());
+        assert_eq!(keys(&["objects", "", "motion", "wave"]), known::<motion_files::WaveFile>());
+        assert_eq!(keys(&["lights", "", "motion"]), known::<motion_files::LightMotionFile>());
         assert_eq!(keys(&["materials", ""]), known::<file::MaterialFile>());
         assert_eq!(keys(&["materials", "", "diffuse"]), known::<file::DiffuseFile>());
         assert_eq!(keys(&["materials", "", "dielectric"]), known::<file::DielectricFile>());

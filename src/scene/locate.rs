@@ -38,15 +38,26 @@ impl Locator<'_> {
         Key { locator: self, path: String::new() }
     }
 
-    /// The value of a scalar, the header of a table; for a missing key, the table that lacks it.
+    /// The value of a scalar, the header of a table; for a missing key, the table that lacks it. Elements of an array are
+    /// named by their number.
     fn span_of(&self, path: &str) -> Range<usize> {
         let (mut table, mut span) = (&self.tree, 0..0);
-        for name in path.split('.') {
+        let mut names = path.split('.');
+        while let Some(name) = names.next() {
             let Some((key, value)) = table.get_key_value(name) else { break };
-            match value.get_ref() {
-                DeValue::Table(inner) => (table, span) = (inner, key.span()),
+            let (value, at) = match value.get_ref() {
+                DeValue::Table(_) => (value, key.span()),
+                DeValue::Array(items) => {
+                    let item = names.clone().next().and_then(|at| items.get(at.parse::<usize>().ok()?));
+                    item.map_or((value, value.span()), |item| (item, item.span()))
+                }
                 _ => return value.span(),
+            };
+            let DeValue::Table(inner) = value.get_ref() else { return at };
+            if matches!(table.get(name).map(Spanned::get_ref), Some(DeValue::Array(_))) {
+                names.next();
             }
+            (table, span) = (inner, at);
         }
         span
     }

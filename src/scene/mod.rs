@@ -13,6 +13,7 @@ use glam::{DAffine3, DVec3, Vec3};
 mod build;
 mod canonical;
 mod class;
+mod deform;
 mod edges;
 mod error;
 mod file;
@@ -25,6 +26,8 @@ mod measure;
 mod medium;
 mod mesh;
 mod models;
+mod motion;
+mod motion_files;
 mod obj;
 mod object;
 mod overrides;
@@ -32,6 +35,7 @@ mod patch;
 mod shape_files;
 mod shipped;
 mod sine;
+mod track;
 
 use crate::names::NoSuch;
 
@@ -66,6 +70,9 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Sorted by name.
     pub lights: Vec<Light>,
+    /// The time, s, at which all this is so; of a scene that stands still, 0.
+    pub time: f64,
+    motion: Option<Arc<motion::Motion>>,
     /// What is no fault, but must be known to whoever reads its pictures: dielectric meshes with holes.
     pub warnings: Vec<String>,
 }
@@ -81,7 +88,7 @@ pub struct Source {
     pub overrides: Vec<(String, String)>,
     /// The scene as TOML with the overrides applied.
     pub resolved: String,
-    /// BLAKE3 (hexadecimal) of `resolved` and of every mesh file.
+    /// BLAKE3 (hexadecimal) of `resolved`, of every mesh file, and of the time where the scene moves.
     pub hash: String,
 }
 

@@ -16,11 +16,16 @@ const WAVES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 /// Turned about x, then y, then z, by degrees.
 pub fn turned(key: &Key, rotate: Floats<3>) -> Result<DMat3, SceneError> {
+    turn(key, rotate).map(DMat3::from_quat)
+}
+
+/// As [`turned`].
+pub fn turn(key: &Key, rotate: Floats<3>) -> Result<DQuat, SceneError> {
     for angle in rotate.0 {
         key.number(angle, -FULL_TURN..=FULL_TURN, "degrees", "a full turn is 360")?;
     }
     let [x, y, z] = rotate.0.map(f64::to_radians);
-    Ok(DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x)))
+    Ok(DQuat::from_euler(EulerRot::ZYX, z, y, x))
 }
 
 pub fn cuboid(key: &Key, file: &BoxFile, unit: f64) -> Result<Shape, SceneError> {

@@ -194,6 +194,7 @@ impl<'a> Run<'a> {
             ("scene.name", scene.name.clone()),
             ("scene.hash", scene.source.hash.clone()),
             ("scene.resolved", scene.source.resolved.clone()),
+            ("time_s", scene.time.to_string()),
             ("estimator", task.estimator.to_string()),
             ("paths", task.paths.to_string()),
             ("camera", task.camera.clone()),

@@ -109,7 +109,8 @@ impl Live {
     }
 
     fn frame(&self) -> Frame {
-        let view = eye::view(&self.camera, self.job.size, &self.everything);
+        let moved = self.job.scene.moves().then(|| extents::everything(&self.job.scene.at(self.time)));
+        let view = eye::view(&self.camera, self.job.size, moved.as_ref().unwrap_or(&self.everything));
         Frame { time: self.time, index: self.index, seed: 0, camera: Some(view) }
     }
 

@@ -9,6 +9,7 @@ mod no_room;
 mod render;
 mod repeat;
 mod scenes;
+mod tracers;
 
 use std::{
     path::{Path, PathBuf},

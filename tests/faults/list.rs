@@ -125,7 +125,7 @@ pub static FAULTS: &[Fault] = &[
     },
     Fault {
         name: "total reflection ignored",
-        file: "light/tracer.glsl",
+        file: "light/events.glsl",
         old: "if (!bend_refract(s, d, from, to, bent, reflectance, p.bent)) return PHOTON_TOTAL_REFLECTION;",
         new: "if (!bend_refract(s, d, from, to, bent, reflectance, p.bent)) reflectance = 0.0;",
         check: &TOTAL_REFLECTION,
@@ -136,5 +136,12 @@ pub static FAULTS: &[Fault] = &[
         old: "s.media = light.media;",
         new: "s.media = 0xffffffffu;",
         check: &LAMP_IN_GLASS,
+    },
+    Fault {
+        name: "one-shot's ways swapped",
+        file: "light/far_wyman2005.glsl",
+        old: "way = bend * straight_through(e) + (1.0 - bend) * inward;",
+        new: "way = bend * inward + (1.0 - bend) * straight_through(e);",
+        check: &ONE_SHOT,
     },
 ];

@@ -3,9 +3,14 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod interfaces;
 mod lights;
+mod meshes;
 mod nothing;
+mod pictures;
+mod powers;
 mod receivers;
+mod refused;
 mod shapes;
 mod sizes;
 
@@ -15,6 +20,7 @@ use common::{
 };
 use nephroid::{
     gpu::Gpu,
+    passes::account::Account,
     scene::{LightKind, Scene},
 };
 
@@ -45,6 +51,24 @@ fn region_flux(gpu: &Gpu, scene: Scene) -> (Picture, f64) {
     let picture = picture(gpu, &job_of(scene, &set, "region", [pixels; 2]));
     let flux = picture.sum("irradiance.caustic") * area;
     (picture, flux)
+}
+
+/// The account alone of a scene's photons; counts and fluxes add up.
+fn counted(scene: Scene) -> Account {
+    let class = scene.paths;
+    let account = common::picture::account(&gpu(), &job_of(scene, &SMALL, "region", SIZE));
+    all_ended(&account, class);
+    let Account { flux_w, other_paths_w, .. } = account;
+    let sum = flux_w[1..].iter().sum::<f64>() + other_paths_w;
+    assert!((sum - flux_w[0]).abs() <= ROUNDING * flux_w[0], "{sum} W in buckets of {} W: {account:?}", flux_w[0]);
+    account
+}
+
+/// `glass-sphere` with another shape in the place of the sphere, as TOML below `[objects.ball]`, and more.
+fn shaped(shape: &str, more: &str, beside: &[(&str, &str)]) -> Scene {
+    let sphere = "[objects.ball.sphere]\ncenter = [0.0, 0.0, 0.0]\nradius = 1.0\n";
+    let text = rewritten("glass-sphere", &[(sphere, &format!("{shape}\n"))], more);
+    written(&text, beside)
 }
 
 fn main_view(gpu: &Gpu, scene: Scene) -> Picture {

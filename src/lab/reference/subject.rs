@@ -29,6 +29,7 @@ impl Subject {
         let overrides = overrides(said("scene.overrides")?).ok_or_else(unsaid)?;
         let scene = Scene::load_again(said("scene.name")?, said("scene.file")?, &overrides)
             .map_err(|reason| CompareError::Scene { image: image.file.clone(), reason: Box::new(reason) })?;
+        let scene = scene.at(image.number("time_s").unwrap_or(0.0));
         if scene.source.hash != said("scene.hash")? {
             let now = Provenance::from([("scene.resolved".to_owned(), scene.source.resolved)]);
             let what = difference(&image.about, &now);
@@ -64,7 +65,8 @@ impl Subject {
 impl fmt::Display for Subject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
-        write!(f, "{}, {}, {width}x{height}", self.scene.name, self.paths)
+        let time = if self.scene.moves() { format!(" at {} s", self.scene.time) } else { String::new() };
+        write!(f, "{}{time}, {}, {width}x{height}", self.scene.name, self.paths)
     }
 }
 

@@ -14,7 +14,8 @@ use crate::{
     settings::{Choice, Setting, Whole},
 };
 
-static SIDE: Whole = Whole {
+/// Texels along each side of the caustic map.
+pub static SIDE: Whole = Whole {
     key: "maps.side",
     unit: "texels",
     default: 512,

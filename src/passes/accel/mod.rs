@@ -3,21 +3,24 @@
 //!
 //! Trees: binary, by obvhs 0.4 (parallel locally-ordered clustering, Meister and Bittner 2018, then reinsertion).
 //! Analytic shapes stay what they are: a sphere is a unit sphere under its instance, never triangles.
-use std::{collections::HashMap, sync::Arc};
+use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3};
 use obvhs::aabb::Aabb;
 
 use crate::scene::{Canonical, LightKind, Material as SceneMaterial, MaterialKind, Mesh, Object, Scene, Shape};
 
 mod error;
 mod layout;
+mod meshes;
 #[cfg(test)]
 mod tests;
 mod tree;
 
 pub use error::AccelError;
 pub use layout::*;
+use meshes::Meshes;
+pub use meshes::{Trees, WORN};
 use tree::{Tree, roomy_box};
 
 /// Levels of both trees together that the shaders' stack holds (`TRAVERSAL_STACK` in `bvh.glsl`).
@@ -51,19 +54,33 @@ pub struct SceneArrays {
 impl SceneArrays {
     /// Builds all trees; the same scene gives the same bytes.
     pub fn build(scene: &Scene) -> Result<SceneArrays, AccelError> {
+        Self::build_with(scene, &mut Trees::default())
+    }
+
+    /// As [`Self::build`], with the trees of another time of the same scene: those of meshes that keep their shape are
+    /// taken as they are. Of a scene that moves, every array is as long at one time as at another, and its instances are
+    /// in the order of the objects.
+    pub fn build_with(scene: &Scene, trees: &mut Trees) -> Result<SceneArrays, AccelError> {
         let mut meshes = Meshes::default();
+        let mut add = |object: usize, name: &str, mesh: &Arc<Mesh>| {
+            meshes.add(trees, name, mesh, scene.deforms(object).then_some(object))
+        };
         let placed: Vec<Placed> = scene
             .objects
             .iter()
             .enumerate()
-            .filter_map(|(i, o)| place(i, o, &mut meshes).transpose())
+            .filter_map(|(i, o)| place(i, o, &mut add).transpose())
             .collect::<Result<_, _>>()?;
         check_count("objects", placed.len(), MOST_INSTANCES)?;
         let dielectric = |m: &SceneMaterial| matches!(m.kind, MaterialKind::Dielectric { .. });
         let named = scene.materials.iter().rposition(dielectric).map_or(0, |last| last + 1);
         check_count("materials up to the last dielectric by name", named, MOST_MATERIALS)?;
         let boxes: Vec<Aabb> = placed.iter().map(|p| p.bounds).collect();
-        let top = if boxes.is_empty() { nowhere() } else { Tree::over(&boxes, TOP_LEVELS) };
+        let top = match boxes.len() {
+            0 => nowhere(),
+            _ if scene.moves() => Tree::apart(&boxes, TOP_LEVELS),
+            _ => Tree::over(&boxes, TOP_LEVELS),
+        };
         let base = top.nodes.len() as u32;
         let instance = |&i: &u32| {
             let p = &placed[i as usize];
@@ -71,10 +88,7 @@ impl SceneArrays {
         };
         let arrays = SceneArrays {
             instances: filled(top.order.iter().filter(|&&i| (i as usize) < placed.len()).map(instance).collect()),
-            nodes: top
-                .moved(0, 0)
-                .chain(meshes.all.iter().flat_map(|m| m.tree.moved(base + m.root, m.triangle)))
-                .collect(),
+            nodes: top.moved(0, 0).chain(meshes.nodes(base)).collect(),
             triangles: filled(meshes.triangles),
             normals: filled(meshes.normals),
             materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
@@ -102,61 +116,6 @@ fn check_count(what: &'static str, count: usize, limit: usize) -> Result<(), Acc
     if count > limit { Err(AccelError::Count { what, count, limit }) } else { Ok(()) }
 }
 
-/// The distinct meshes met so far, their trees and their triangles.
-#[derive(Default)]
-struct Meshes {
-    all: Vec<BuiltMesh>,
-    /// By address: objects share a mesh through one `Arc`.
-    known: HashMap<*const Mesh, usize>,
-    nodes: u32,
-    triangles: Vec<Triangle>,
-    normals: Vec<TriangleNormals>,
-}
-
-struct BuiltMesh {
-    tree: Tree,
-    /// Counted from the first node of the first mesh.
-    root: u32,
-    /// First of its triangles.
-    triangle: u32,
-}
-
-impl Meshes {
-    /// Index of the mesh, built at its first use; it has at least one triangle.
-    fn add(&mut self, name: &str, mesh: &Arc<Mesh>) -> Result<usize, AccelError> {
-        if let Some(&known) = self.known.get(&Arc::as_ptr(mesh)) {
-            return Ok(known);
-        }
-        check_count("triangles", self.triangles.len() + mesh.triangles.len(), LARGEST_INDEX)?;
-        let corners = (0..mesh.triangles.len()).map(|t| triangle(name, mesh, t)).collect::<Result<Vec<_>, _>>()?;
-        let boxes: Vec<Aabb> =
-            corners.iter().map(|t| Aabb::from_points(&[t.a.into(), t.b.into(), t.c.into()])).collect();
-        let tree = Tree::over(&boxes, TRAVERSAL_STACK - TOP_LEVELS);
-        let built = BuiltMesh { root: self.nodes, triangle: self.triangles.len() as u32, tree };
-        self.nodes += built.tree.nodes.len() as u32;
-        self.triangles.extend(built.tree.order.iter().map(|&t| corners[t as usize]));
-        self.normals.extend(built.tree.order.iter().map(|&t| corner_normals(mesh, t as usize)));
-        self.all.push(built);
-        self.known.insert(Arc::as_ptr(mesh), self.all.len() - 1);
-        Ok(self.all.len() - 1)
-    }
-}
-
-fn triangle(name: &str, mesh: &Mesh, index: usize) -> Result<Triangle, AccelError> {
-    let missing = || AccelError::Vertex { name: name.to_owned(), file: mesh.file.clone(), triangle: index };
-    let corner = |k: usize| -> Result<[f32; 3], AccelError> {
-        let position = mesh.positions.get(mesh.triangles[index][k] as usize).ok_or_else(missing)?;
-        vector(name, "a vertex", position.as_dvec3())
-    };
-    Ok(Triangle { a: corner(0)?, b: corner(1)?, c: corner(2)? })
-}
-
-/// A vertex without a normal gets zero, which the shaders answer with the geometric normal.
-fn corner_normals(mesh: &Mesh, index: usize) -> TriangleNormals {
-    let at = |k: usize| mesh.normals.get(mesh.triangles[index][k] as usize).copied().unwrap_or(Vec3::ZERO).to_array();
-    TriangleNormals { a: at(0), b: at(1), c: at(2) }
-}
-
 /// An instance before its place in the order is known.
 struct Placed {
     instance: Instance,
@@ -164,8 +123,12 @@ struct Placed {
     bounds: Aabb,
 }
 
-/// None for a mesh without triangles: there is nothing to hit.
-fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Placed>, AccelError> {
+/// None for a mesh without triangles: there is nothing to hit. `add` gives a mesh its place among the others.
+fn place(
+    index: usize,
+    object: &Object,
+    add: &mut impl FnMut(usize, &str, &Arc<Mesh>) -> Result<usize, AccelError>,
+) -> Result<Option<Placed>, AccelError> {
     let name = &object.name;
     let (mut mesh, mut detail) = (None, 0);
     let (kind, to_world, (lo, hi)) = match &object.shape {
@@ -190,7 +153,7 @@ fn place(index: usize, object: &Object, meshes: &mut Meshes) -> Result<Option<Pl
             (kind, *to_world, (lo, hi))
         }
         Shape::Mesh { mesh: triangles, to_world } => {
-            mesh = Some(meshes.add(name, triangles)?);
+            mesh = Some(add(index, name, triangles)?);
             (SHAPE_MESH, *to_world, bounds(triangles, to_world))
         }
     };

@@ -14,6 +14,14 @@ pub struct Tree {
 const PARAMS: BvhBuildParams = BvhBuildParams::medium_build();
 const _: () = assert!(PARAMS.max_prims_per_leaf < 16 && !PARAMS.pre_split);
 
+/// One primitive a leaf.
+const APART: BvhBuildParams = BvhBuildParams { max_prims_per_leaf: 1, ..PARAMS };
+
+/// Nodes of a tree over so many primitives, at most: one a leaf.
+pub fn most_nodes(primitives: usize) -> usize {
+    (2 * primitives).saturating_sub(1).max(1)
+}
+
 /// Primitives of a leaf of a balanced tree.
 const BALANCED_LEAF: usize = 4;
 
@@ -23,19 +31,31 @@ impl Tree {
     /// Clustering chains equal boxes one by one (n coincident triangles make a tree n deep, no better than a list);
     /// a tree too deep for the shaders' stack is thrown away for a balanced one.
     pub fn over(boxes: &[Aabb], deepest: usize) -> Tree {
-        let tree = Tree::clustered(boxes);
-        if tree.depth() <= deepest { tree } else { Tree::balanced(boxes) }
+        let tree = Tree::clustered(boxes, PARAMS);
+        if tree.depth() <= deepest { tree } else { Tree::balanced(boxes, BALANCED_LEAF) }
+    }
+
+    /// As [`Tree::over`], with a leaf for each box: 2n − 1 nodes wherever the boxes are, and no order but the boxes' own.
+    pub fn apart(boxes: &[Aabb], deepest: usize) -> Tree {
+        let clustered = Tree::clustered(boxes, APART);
+        let fits = clustered.depth() <= deepest && clustered.nodes.len() == most_nodes(boxes.len());
+        let mut tree = if fits { clustered } else { Tree::balanced(boxes, 1) };
+        for leaf in tree.nodes.iter_mut().filter(|node| node.count > 0) {
+            leaf.first = tree.order[leaf.first as usize];
+        }
+        tree.order = (0..boxes.len() as u32).collect();
+        tree
     }
 
     /// Halved at the median along the longest side of the centres, down to leaves of a few.
-    fn balanced(boxes: &[Aabb]) -> Tree {
+    fn balanced(boxes: &[Aabb], leaf: usize) -> Tree {
         let mut tree = Tree { nodes: vec![Node::default()], order: (0..boxes.len() as u32).collect() };
         let mut open = vec![(0, 0..boxes.len())];
         while let Some((index, range)) = open.pop() {
             let of = |&i: &u32| boxes[i as usize];
             let part = &mut tree.order[range.clone()];
             let around = part.iter().map(of).reduce(|a, b| a.union(&b)).unwrap_or(Aabb::INVALID);
-            let (count, first) = if part.len() <= BALANCED_LEAF {
+            let (count, first) = if part.len() <= leaf {
                 (part.len() as u32, range.start as u32)
             } else {
                 let middle = part.len() / 2;
@@ -52,8 +72,8 @@ impl Tree {
         tree
     }
 
-    fn clustered(boxes: &[Aabb]) -> Tree {
-        let bvh = build_bvh2(boxes, PARAMS, &mut std::time::Duration::default());
+    fn clustered(boxes: &[Aabb], params: BvhBuildParams) -> Tree {
+        let bvh = build_bvh2(boxes, params, &mut std::time::Duration::default());
         let node = |node: &obvhs::bvh2::node::Bvh2Node| Node {
             lo: node.aabb().min.into(),
             count: node.prim_count,
@@ -61,6 +81,49 @@ impl Tree {
             first: node.first_index,
         };
         Tree { nodes: bvh.nodes.iter().map(node).collect(), order: bvh.primitive_indices }
+    }
+
+    /// Fits the boxes of all nodes to where the primitives are now; which lie together stays as it was.
+    pub fn refit(&mut self, boxes: &[Aabb]) {
+        let (mut open, mut all) = (vec![0], Vec::with_capacity(self.nodes.len()));
+        while let Some(index) = open.pop() {
+            all.push(index);
+            let node = &self.nodes[index];
+            if node.count == 0 {
+                open.extend([node.first as usize, node.first as usize + 1]);
+            }
+        }
+        // Children come after their parents.
+        for index in all.into_iter().rev() {
+            let Node { count, first, .. } = self.nodes[index];
+            let (first, count) = (first as usize, count as usize);
+            let around = match count {
+                0 => [first, first + 1].map(|child| self.bounds(child)).into_iter().reduce(|a, b| a.union(&b)),
+                _ => self.order[first..first + count].iter().map(|&p| boxes[p as usize]).reduce(|a, b| a.union(&b)),
+            };
+            let around = around.unwrap_or(Aabb::INVALID);
+            (self.nodes[index].lo, self.nodes[index].hi) = (around.min.into(), around.max.into());
+        }
+    }
+
+    fn bounds(&self, node: usize) -> Aabb {
+        Aabb::new(self.nodes[node].lo.into(), self.nodes[node].hi.into())
+    }
+
+    /// What a ray that meets the root is expected to cost, in boxes and primitives that it is tried against (the surface
+    /// area heuristic: Goldsmith and Salmon 1987).
+    pub fn cost(&self) -> f64 {
+        let area = |node: usize| f64::from(self.bounds(node).half_area());
+        let whole = area(0).max(f64::MIN_POSITIVE);
+        let (mut open, mut sum) = (vec![0], 0.0);
+        while let Some(index) = open.pop() {
+            let node = &self.nodes[index];
+            sum += area(index) / whole * f64::from(node.count.max(1));
+            if node.count == 0 {
+                open.extend([node.first as usize, node.first as usize + 1]);
+            }
+        }
+        sum
     }
 
     /// Levels, the root's among them. Without recursion: a degenerate tree may be as deep as it has leaves.
@@ -125,15 +188,32 @@ mod tests {
     fn leaves_hold_every_primitive_once() {
         for count in [1, 2, 3, 9, 1000] {
             let boxes = boxes(count, |i| (i * 7919 % count) as f32);
-            check(&Tree::clustered(&boxes), &boxes);
-            check(&Tree::balanced(&boxes), &boxes);
+            check(&Tree::clustered(&boxes, PARAMS), &boxes);
+            check(&Tree::balanced(&boxes, BALANCED_LEAF), &boxes);
+        }
+    }
+
+    #[test]
+    fn a_leaf_for_each_box_makes_as_many_nodes_wherever_they_are() {
+        for count in [1, 2, 3, 9, 100] {
+            for (what, boxes) in
+                [("apart", boxes(count, |i| (i * 7919 % count) as f32)), ("equal", boxes(count, |_| 1.0))]
+            {
+                let tree = Tree::apart(&boxes, 24);
+                check(&tree, &boxes);
+                assert_eq!(tree.nodes.len(), most_nodes(count), "{count} {what}");
+                assert!(tree.depth() <= 24 && tree.order.iter().enumerate().all(|(k, &p)| k == p as usize));
+            }
         }
     }
 
     #[test]
     fn equal_boxes_make_no_deep_tree() {
         let same = boxes(5000, |_| 1.0);
-        assert!(Tree::clustered(&same).depth() > 1000, "clustering has learnt to balance: drop the other builder");
+        assert!(
+            Tree::clustered(&same, PARAMS).depth() > 1000,
+            "clustering has learnt to balance: drop the other builder"
+        );
         let tree = Tree::over(&same, 24);
         check(&tree, &same);
         assert_eq!(tree.depth(), 12, "5000 halved down to 4: 11 times");

@@ -21,7 +21,8 @@ pub struct Emission {
     pub band: Option<usize>,
 }
 
-/// The emission views of every light: none where nothing is specular or a light has no power.
+/// The emission views of every light: none where nothing is specular or a light has no power. Where the scene moves, a
+/// light that reaches nothing now keeps its views, which then see nothing: it may reach something at another time.
 pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Result<Vec<Emission>, PlanError> {
     let specular = extents::specular(scene);
     if specular.is_empty() {
@@ -34,7 +35,11 @@ pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Resul
         content.join(&extents::of_region(receiver));
     }
     let mut all = Vec::new();
-    for (light, lamp) in scene.lights.iter().enumerate().filter(|(_, lamp)| lamp.kind.power() != [0.0; 3]) {
+    for (light, lamp) in scene.lights.iter().enumerate() {
+        let dark = lamp.kind.power() == [0.0; 3];
+        if dark && !scene.moves() {
+            continue;
+        }
         let views = match lamp.kind {
             LightKind::Directional { direction, .. } => vec![View::orthographic(direction, &content, &everything)],
             LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
@@ -45,9 +50,13 @@ pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Resul
                 }
             }
         };
-        let lit = |view: View| match lamp.kind {
-            LightKind::Spot { position, beam, .. } if !shared => beam_view(view, position, &beam, &content),
-            _ => Some(view),
+        let lit = |view: View| {
+            let reached = match lamp.kind {
+                _ if dark => None,
+                LightKind::Spot { position, beam, .. } if !shared => beam_view(view, position, &beam, &content),
+                _ => Some(view),
+            };
+            reached.or_else(|| scene.moves().then(|| view.of_nothing()))
         };
         let bands: &[Option<usize>] = if scene.is_dispersive() { &[Some(0), Some(1), Some(2)] } else { &[None] };
         let each = |view: View| bands.iter().map(move |&band| Emission { light, view, band });

@@ -1,13 +1,15 @@
-//! Lights: their views, and the tracer `bvh` that fills photon columns from each (Wyman 2008, section 2: the photon
-//! buffer; exact intersection in place of the image-space estimate).
+//! Lights: their views, and the tracers that fill photon columns from each (Wyman 2008, section 2: the photon buffer).
 //!
-//! Cost: one dispatch of N² invocations a view, bound by traversal; 32 bytes written a photon for `maps`.
+//! Cost: one dispatch of N² invocations a view; with `bvh` bound by traversal, 32 bytes written a photon for `maps`. The
+//! image-space tracers rasterise the view up to four times first (at most 92 bytes a photon) and are bound by fetches.
 //!
 //! In class `all:N` each sample grows a tree, and the buffer has `light.layers` layers, which cost their bytes whether a
 //! sample fills them or not.
 
 mod emission;
+mod images;
 mod photons;
+mod tracer;
 
 use crate::{
     scene::{PathClass, Scene},
@@ -15,7 +17,9 @@ use crate::{
 };
 
 pub use emission::{Emission, emissions, view_name};
+pub use images::Bench;
 pub use photons::{Column, Photons, Tracing, photon_buffer, photons};
+pub use tracer::{BACK, TOTAL_REFLECTION, TRACER, Tracer};
 
 /// Photons a side of an emission view.
 pub static SIDE: Whole = Whole {
@@ -33,10 +37,6 @@ pub static VIEW: Choice = Choice {
     words: &["fitted", "shared"],
     doc: "fitted: to the specular objects; shared: one view of objects and receiver for photons and map, as in the papers",
 };
-
-/// The tracer.
-pub static TRACER: Choice =
-    Choice { key: "light.tracer", default: "bvh", words: &["bvh"], doc: "bvh: exact intersection in a compute shader" };
 
 /// The path class.
 pub static PATHS: Word = Word {
@@ -63,6 +63,8 @@ pub static SETTINGS: &[Setting] = &[
     Setting::Whole(&SIDE),
     Setting::Choice(&VIEW),
     Setting::Choice(&TRACER),
+    Setting::Choice(&TOTAL_REFLECTION),
+    Setting::Choice(&BACK),
     Setting::Word(&PATHS),
     Setting::Whole(&LAYERS),
 ];

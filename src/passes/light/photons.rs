@@ -1,6 +1,6 @@
 //! The photon buffer, and the dispatch that fills it from one view.
 
-use super::{Emission, LAYERS, SIDE};
+use super::{Emission, LAYERS, SIDE, Tracer};
 use crate::{
     gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
     passes::scene::SceneBuffers,
@@ -116,6 +116,8 @@ pub struct Tracing<'a> {
     pub scene: &'a SceneBuffers,
     /// The buffer of all emission views.
     pub views: BufferId,
+    /// The tracer.
+    pub tracer: &'a Tracer,
     /// The path class.
     pub class: PathClass,
     /// The photon buffer.
@@ -145,7 +147,7 @@ impl Tracing<'_> {
             light: self.emission.light as u32,
             view: self.index as u32,
         };
-        let pass = self.photons.define(self.scene.lights(self.scene.tracing(pass)));
+        let pass = self.photons.define(self.tracer.give(self.scene.lights(self.scene.tracing(pass)), self.index));
         let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
         pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect).push(&push).dispatch(
             shader,

@@ -1,0 +1,123 @@
+//! The photons of every view, kept side by side: what a method would take, and nothing made of it.
+
+use glam::DVec3;
+
+use crate::{
+    gpu::{Feature, Format, ImageId, Lifetime, Resource},
+    methods::{Job, Method, Planned, Provided, Slot},
+    passes::{PlanError, light::Column},
+    renderer::{Dump, RenderError, Renderer},
+    settings::Setting,
+};
+
+/// Invocations along one side of the dispatch's work groups.
+const GROUP: u32 = 8;
+
+/// Columns that are kept, the names of their images and of the shader's.
+const KEPT: [(Column, &str, &str); 3] = [
+    (Column::Hit, "tracers/hit", "kept_hit"),
+    (Column::Flux, "tracers/flux", "kept_flux"),
+    (Column::Exit, "tracers/exit", "kept_exit"),
+];
+
+/// Where a photon was at the end, and how it came there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    /// How it ended (`glsl/shared/photon.glsl`), 0 where none was emitted.
+    pub status: usize,
+    /// m, where it arrived.
+    pub hit: DVec3,
+    /// m, on the last specular surface.
+    pub exit: DVec3,
+    /// W, mean of the bands, where it arrived.
+    pub flux: f64,
+}
+
+/// Takes the place of a method in a job.
+pub struct Keep;
+
+impl Method for Keep {
+    fn name(&self) -> &'static str {
+        "tracers"
+    }
+
+    fn title(&self) -> &'static str {
+        "photons, kept as the tracer left them"
+    }
+
+    fn paper(&self) -> &'static str {
+        "none"
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::Surface]
+    }
+
+    fn needs(&self) -> &'static [Feature] {
+        &[]
+    }
+
+    fn settings(&self) -> &'static [Setting] {
+        &[]
+    }
+
+    fn columns(&self) -> &'static [Column] {
+        &[Column::Hit, Column::Flux, Column::Exit]
+    }
+
+    fn stages(&self) -> &'static [&'static str] {
+        &["tracers/keep"]
+    }
+
+    fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
+        let (side, layers) = (job.photons.side, job.emissions.len() as u32);
+        let image = |name| job.plan.image_array(name, [side; 2], layers, Format::Rgba32f, Lifetime::Frame);
+        Ok(Box::new(Keeping { images: KEPT.map(|(_, name, _)| name).map(image) }))
+    }
+}
+
+struct Keeping {
+    images: [ImageId; 3],
+}
+
+impl Planned for Keeping {
+    fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
+        ("tracers/takes_all.glsl", Vec::new())
+    }
+
+    fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
+        let groups = job.photons.side.div_ceil(GROUP);
+        let pass = job.plan.pass(&name_of("tracers/keep")).with(job.photons.fetch(&KEPT.map(|(column, ..)| column)));
+        let stored = KEPT.iter().zip(self.images).fold(pass, |pass, ((_, _, name), image)| pass.store(name, image));
+        stored.push(&(view as i32)).dispatch("tracers/keep.comp", [groups, groups, 1], GROUP * GROUP);
+    }
+
+    fn provide(&self) -> Provided {
+        Provided { surface: None, deposits: Vec::new() }
+    }
+}
+
+/// What the last frame left, view by view.
+pub fn ends(renderer: &Renderer) -> Result<Vec<Vec<End>>, RenderError> {
+    let read = |at: usize| renderer.dump(KEPT[at].1).map(layers);
+    let (hit, flux, exit) = (read(0)?, read(1)?, read(2)?);
+    let views = hit.iter().zip(&flux).zip(&exit);
+    let texels = |((hit, flux), exit): ((&Vec<f32>, &Vec<f32>), &Vec<f32>)| {
+        let texels = hit.chunks_exact(4).zip(flux.chunks_exact(4)).zip(exit.chunks_exact(4));
+        texels.map(|((hit, flux), exit)| end(hit, flux, exit)).collect()
+    };
+    Ok(views.map(texels).collect())
+}
+
+fn end(hit: &[f32], flux: &[f32], exit: &[f32]) -> End {
+    let point = |texel: &[f32]| DVec3::new(texel[0].into(), texel[1].into(), texel[2].into());
+    let mean = point(flux).element_sum() / 3.0;
+    End { status: exit[3] as usize, hit: point(hit), exit: point(exit), flux: mean }
+}
+
+fn layers(dump: Dump) -> Vec<Vec<f32>> {
+    match dump {
+        Dump::Image { layers, .. } => layers,
+        Dump::Buffer(_) => Vec::new(), // no image of this room's is a buffer
+    }
+}
