@@ -20,6 +20,10 @@ const SUMS: f64 = 1e-5;
 /// where pixels and texels beat, and the map's margin, which the picture does not show.
 const PICTURED: f64 = 0.005;
 
+/// What shipped scenes name beside them.
+const MESHES: [(&str, &str); 2] =
+    [("bunny-lo.obj", include_str!("../scenes/bunny-lo.obj")), ("knot.obj", include_str!("../scenes/knot.obj"))];
+
 const SIDES: [(&str, &str); 2] = [("light.side", "256"), ("maps.side", "256")];
 
 /// Counts are exact; fluxes to rounding; deposited is what was valid, and nothing where nothing was.
@@ -74,8 +78,7 @@ fn shipped_scenes_under_a_point_light() {
     let gpu = gpu();
     for (name, _) in Scene::shipped() {
         let lamp = "\n[lights.lamp.point]\nposition = [0.5, 7.0, 1.0]\nintensity = [40.0, 30.0, 20.0]\n";
-        let mut scene =
-            written(&rewritten(name, &[], lamp), &[("bunny-lo.obj", include_str!("../scenes/bunny-lo.obj"))]);
+        let mut scene = written(&rewritten(name, &[], lamp), &MESHES);
         scene.lights.retain(|light| light.name == "lamp");
         all_ways(&gpu, &format!("{name}, lamp"), &scene);
     }

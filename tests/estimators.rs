@@ -128,6 +128,11 @@ fn on_the_moving_sphere() {
 }
 
 #[test]
+fn on_the_bending_knot() {
+    hold("bending", None, "region", 60_000, 128);
+}
+
+#[test]
 fn on_the_bunny() {
     hold("bunny", None, "region", 40_000, 128);
 }

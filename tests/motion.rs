@@ -230,3 +230,41 @@ fn far_fast_and_small_are_answered() {
     }
     assert_quiet(&gpu);
 }
+
+#[test]
+fn the_knot_clears_its_floor_however_it_is_twisted() {
+    let scene = scene("bending", &[]);
+    let lowest = |time: f64| scene.at(time).objects[1].shape.bounds().expect("a knot")[0].y;
+    assert_eq!(scene.objects[1].name, "knot");
+    let all: Vec<f64> = (0..80).map(|k| lowest(0.05 * f64::from(k))).collect();
+    let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+    println!("{least} m above the floor");
+    assert!(least > 0.05, "{least} m");
+    assert!((lowest(0.5) - lowest(1_000_000.5)).abs() < ROUNDING, "10⁶ s are a quarter of a million periods");
+}
+
+/// Refitted or built again, the tree holds the same triangles, and the picture is that of a renderer that knows no other
+/// time; nothing is allocated for it.
+#[test]
+fn a_mesh_that_bends_is_drawn_as_it_is_whatever_it_was_before() {
+    let gpu = gpu();
+    let job = job_of(scene("bending", &[]), &SIDES, "main", [48, 48]);
+    let mut renderer = Renderer::new(&gpu, &job).unwrap();
+    frame_at(&mut renderer, 0.5);
+    let before = gpu.calls();
+    let times = [0.1, 0.2, 1.0, 3.0, 1.0, 2.0, 0.0];
+    for time in times {
+        renderer.frame(&Frame { time, ..Frame::default() }).unwrap();
+    }
+    let after = gpu.calls();
+    assert_eq!((after.allocations, after.pipelines), (before.allocations, before.pipelines));
+    let moved = renderer.moved();
+    println!("{moved:?}");
+    assert_eq!((moved.refitted + moved.rebuilt, moved.replans), (times.len() as u64 + 1, 0));
+    assert!(moved.refitted > 0, "a small twist leaves the tree as good as it was");
+    for time in [1.0, 3.0] {
+        let mut fresh = Renderer::new(&gpu, &job_of(scene("bending", &[]).at(time), &SIDES, "main", [48, 48])).unwrap();
+        assert_eq!(frame_at(&mut renderer, time), frame_at(&mut fresh, time), "at {time} s");
+    }
+    assert_quiet(&gpu);
+}

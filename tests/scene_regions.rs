@@ -110,6 +110,15 @@ fn moving_sphere_frames_the_middle_of_its_way() {
     assert!(middle >= SHARE && first > 0.5 && last > 0.5, "{first} {middle} {last}");
 }
 
+#[test]
+fn bending_frames_its_caustic_while_the_knot_twists() {
+    let scene = load("bending");
+    assert_eq!([scene.region.center, scene.region.u], [DVec3::ZERO, DVec3::X * 2.5], "below the knot's middle");
+    let shares = [0.0, 1.0, 2.0, 3.0].map(|time| held(&scene.at(time)));
+    println!("bending: {shares:.4?}");
+    assert!(shares[0] >= SHARE && shares.iter().all(|share| *share >= 0.97), "{shares:?}");
+}
+
 /// A glass mesh with a hierarchy over its triangles: candidates in single precision, hits in double.
 struct Glass {
     corners: Vec<[DVec3; 3]>,

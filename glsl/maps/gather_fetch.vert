@@ -13,7 +13,6 @@ layout(push_constant, scalar) uniform Push {
     int side;       // texels of the map
     float diameter; // texels
     uint light;
-    float scale;
 } push;
 
 layout(location = 0) flat out vec3 splat_flux;   // W, already divided by the sum of the weights

@@ -14,16 +14,17 @@ layout(push_constant, scalar) uniform Push {
     int side;       // texels of the map
     float diameter; // texels
     uint light;
-    float scale;    // units a watt
 } push;
 
 layout(set = 0, binding = 10, scalar) buffer MapSums { uint data[]; } maps_sums; // low, high of each band of each texel
+
+layout(set = 0, binding = 11, scalar) readonly buffer MapUnit { float per_watt, watts; } maps_unit;
 
 // Beyond what any number of photons may bring: keeps what is infinite from being converted.
 const float MOST = 1.1529215e18; // 2^60
 
 void add_fixed(uint word, float flux) {
-    float units = min(flux * push.scale, MOST);
+    float units = min(flux * maps_unit.per_watt, MOST);
     if (!(units > 0.0)) return;
     uint high = uint(units * 2.3283064e-10); // 2^-32
     float rest = units - float(high) * 4294967296.0;

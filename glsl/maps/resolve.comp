@@ -7,10 +7,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(push_constant, scalar) uniform Push {
     int side;
-    float unit; // W
 } push;
 
 layout(set = 0, binding = 10, scalar) buffer MapSums { uint data[]; } maps_sums;
+layout(set = 0, binding = 12, scalar) readonly buffer MapUnit { float per_watt, watts; } maps_unit;
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2DArray maps_map;
 
 void main() {
@@ -20,7 +20,7 @@ void main() {
     vec3 flux;
     for (uint band = 0u; band < 3u; band++) {
         uint low = maps_sums.data[word + 2u * band], high = maps_sums.data[word + 2u * band + 1u];
-        flux[band] = (float(high) * 4294967296.0 + float(low)) * push.unit;
+        flux[band] = (float(high) * 4294967296.0 + float(low)) * maps_unit.watts;
         maps_sums.data[word + 2u * band] = 0u;
         maps_sums.data[word + 2u * band + 1u] = 0u;
     }

@@ -9,7 +9,6 @@ layout(push_constant) uniform Push {
     int side;
     float diameter;
     uint light;
-    float scale;
 } push;
 
 layout(location = 0) flat in vec3 splat_flux;

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum, builder::PossibleValue};
 
 use super::Failure;
 use crate::{
-    lab::Format,
+    lab::{Format, Sequence},
     methods::{self, Method},
     names::NoSuch,
     renderer::{self, Job, Providers},
@@ -30,6 +30,10 @@ pub struct RenderArgs {
     /// Time of the frame, s
     #[arg(long, value_name = "T", default_value = "0", value_parser = parse_time, allow_negative_numbers = true)]
     pub time: f64,
+    /// Frames at times from FROM on, before TO, FPS a second (0..2@30): numbered pictures, a line of JSON for each in
+    /// frames.jsonl, and what the stages took; the same command goes on where it was interrupted
+    #[arg(long, value_name = "FROM..TO@FPS", conflicts_with_all = ["time", "repeat", "dump"], allow_hyphen_values = true)]
+    pub sequence: Option<Sequence>,
     /// Seed of anything random; nothing is yet
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u32,

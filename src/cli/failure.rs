@@ -111,7 +111,7 @@ impl From<LabError> for Failure {
     fn from(error: LabError) -> Self {
         match error {
             LabError::Render(error) => error.into(),
-            LabError::Interrupted => Self { code: INTERRUPTED, error: error.into() },
+            LabError::Interrupted | LabError::Stopped { .. } => Self { code: INTERRUPTED, error: error.into() },
             other => Self::failed(other),
         }
     }

@@ -9,6 +9,7 @@ mod list;
 mod output;
 mod progress;
 mod render;
+mod sequence;
 mod signals;
 mod tracers;
 mod truth;

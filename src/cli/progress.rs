@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::output::say;
 use crate::{
     lab::{Experiment, Step},
     truth::Standing,
@@ -35,6 +36,33 @@ impl Progress {
 }
 
 impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Of a sequence: how many frames are there.
+pub struct SequenceProgress(ProgressBar);
+
+impl SequenceProgress {
+    pub fn new(frames: u32) -> Self {
+        let style = ProgressStyle::with_template("{msg:14} {wide_bar} {pos}/{len} {elapsed} {eta} left");
+        let bar = ProgressBar::new(u64::from(frames)).with_message("preparing");
+        Self(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
+    }
+
+    pub fn at(&self, done: usize, frame: u32) {
+        self.0.set_position(done as u64);
+        self.0.set_message(format!("frame {frame}"));
+    }
+
+    /// A line beside the bar.
+    pub fn say(&self, line: &str) {
+        self.0.suspend(|| say(line));
+    }
+}
+
+impl Drop for SequenceProgress {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }

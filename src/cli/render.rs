@@ -13,7 +13,7 @@ use super::{
     args::RenderArgs,
     output::{print, say, warn},
     progress::Progress,
-    signals,
+    sequence, signals,
 };
 use crate::{
     gpu::{DeviceChoice, Gpu, GpuError, GpuOptions, Plan},
@@ -25,6 +25,9 @@ use crate::{
 
 /// Whatever can be found wrong is found before the first frame: options, scene, plan, dumps, folder, device, in this order.
 pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
+    if let Some(sequence) = args.sequence {
+        return sequence::run(args, sequence);
+    }
     let job = args.job.job()?;
     let planned = renderer::plan(&job)?;
     check_dumps(&args.dump, &planned.plan)?;
@@ -51,7 +54,7 @@ pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     print(&report.write(args.list.format)?)
 }
 
-fn open(args: &RenderArgs) -> Result<Gpu, Failure> {
+pub(super) fn open(args: &RenderArgs) -> Result<Gpu, Failure> {
     let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
     Ok(Gpu::new(&GpuOptions { device, validation: args.validation, capture: args.capture })?)
 }
@@ -80,7 +83,7 @@ fn check_dumps(names: &[String], plan: &Plan) -> Result<(), Failure> {
 }
 
 /// What does not fit is said with the options that make it as large as it is.
-fn with_remedy(error: RenderError, job: &Job) -> Failure {
+pub(super) fn with_remedy(error: RenderError, job: &Job) -> Failure {
     let RenderError::Gpu(GpuError::TooLarge { name, .. }) = &error else { return error.into() };
     let options = options_of(name.split('/').next().unwrap_or_default(), job);
     Failure::usage(anyhow!("{error}; lower {options}"))

@@ -225,28 +225,6 @@ impl Plan {
         BufferId(self.buffers.len() - 1)
     }
 
-    /// Adds a buffer that holds `items` from the start, and others at another time where the scene moves.
-    pub fn upload<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
-        let lifetime = if self.moves { Lifetime::Frame } else { Lifetime::Persistent };
-        self.hold(name, items, lifetime)
-    }
-
-    /// Adds a buffer that holds `items` whatever the time.
-    pub fn upload_once<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
-        self.hold(name, items, Lifetime::Persistent)
-    }
-
-    fn hold<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T], lifetime: Lifetime) -> BufferId {
-        let content: Arc<[u8]> = bytemuck::cast_slice(items).into();
-        self.buffers.push(BufferDecl {
-            name: name.to_owned(),
-            bytes: content.len() as u64,
-            content: Some(content),
-            lifetime,
-        });
-        BufferId(self.buffers.len() - 1)
-    }
-
     /// Adds an image.
     pub fn image(&mut self, name: &str, extent: [u32; 2], format: Format, lifetime: Lifetime) -> ImageId {
         self.images.push(ImageDecl { name: name.to_owned(), extent, layers: 1, array: false, format, lifetime });

@@ -9,7 +9,7 @@ use super::{
     device::Shared,
     error::GpuError,
     memory::Buffer,
-    plan::{BufferDecl, Lifetime, Plan},
+    plan::{BufferDecl, BufferId, Lifetime, Plan},
     program::Program,
     record::buffer_barrier,
 };
@@ -64,6 +64,28 @@ impl BufferDecl {
 }
 
 impl Plan {
+    /// Adds a buffer that holds `items` from the start, and others at another time where the scene moves.
+    pub fn upload<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
+        let lifetime = if self.moves { Lifetime::Frame } else { Lifetime::Persistent };
+        self.hold(name, items, lifetime)
+    }
+
+    /// Adds a buffer that holds `items` whatever the time.
+    pub fn upload_once<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T]) -> BufferId {
+        self.hold(name, items, Lifetime::Persistent)
+    }
+
+    fn hold<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T], lifetime: Lifetime) -> BufferId {
+        let content: Arc<[u8]> = bytemuck::cast_slice(items).into();
+        self.buffers.push(BufferDecl {
+            name: name.to_owned(),
+            bytes: content.len() as u64,
+            content: Some(content),
+            lifetime,
+        });
+        BufferId(self.buffers.len() - 1)
+    }
+
     /// Bytes of the mapped memory through which contents change.
     pub fn staging_bytes(&self) -> u64 {
         self.buffers.iter().filter(|b| b.may_change()).map(|b| b.bytes.next_multiple_of(4)).sum()

@@ -29,6 +29,14 @@ pub enum LabError {
     /// Whoever watches said to stop.
     #[error("interrupted: nothing was written")]
     Interrupted,
+    /// A sequence was stopped between two frames.
+    #[error("interrupted after {done} of {count} frames: the same command goes on")]
+    Stopped {
+        /// Frames that are whole.
+        done: usize,
+        /// Frames of the sequence.
+        count: usize,
+    },
 }
 
 /// Where an experiment is, told before each step.

@@ -17,8 +17,24 @@ pub fn write_outputs(
     exposure_ev: f64,
     provenance: &Provenance,
 ) -> Result<(), LabError> {
-    write(folder, "image.exr", &layers.to_exr(provenance)?)?;
-    write(folder, "image.png", &to_png(layers, "radiance", exposure_ev, provenance)?)?;
+    write_pictures(folder, "image", layers, exposure_ev, provenance)?;
+    write_result(folder, report)
+}
+
+/// Writes the layers and the picture: `STEM.exr`, `STEM.png`.
+pub fn write_pictures(
+    folder: &mut OutFolder,
+    stem: &str,
+    layers: &Layers,
+    exposure_ev: f64,
+    provenance: &Provenance,
+) -> Result<(), LabError> {
+    write(folder, &format!("{stem}.exr"), &layers.to_exr(provenance)?)?;
+    write(folder, &format!("{stem}.png"), &to_png(layers, "radiance", exposure_ev, provenance)?)
+}
+
+/// Writes `timings.csv` and `result.json`.
+pub fn write_result(folder: &mut OutFolder, report: &impl Report) -> Result<(), LabError> {
     folder.write("timings.csv", |out| out.write_all(&report.write(Format::Csv)?))?;
     folder.write("result.json", |out| out.write_all(&report.write(Format::Json)?))?;
     Ok(())

@@ -67,6 +67,7 @@ impl PlanReport {
         let phases = [Phase::Prepare, Phase::Frame, Phase::Account];
         let of_phase = |phase| plan.passes.iter().filter(move |p| p.phase == phase);
         let images = plan.images.iter().map(ResourceRow::of_image);
+        let staging = (plan.staging_bytes() > 0).then(|| ResourceRow::staging(plan.staging_bytes()));
         let left_out = plan.left_out.iter().map(|l| LeftOutRow { name: l.name.clone(), reason: l.reason.clone() });
         Self {
             schema: "nephroid.plan/1",
@@ -77,7 +78,7 @@ impl PlanReport {
             settings: in_force(job),
             samples: job.eye_samples(),
             passes: phases.into_iter().flat_map(of_phase).map(|p| PassRow::new(plan, p)).collect(),
-            resources: images.chain(plan.buffers.iter().map(ResourceRow::of_buffer)).collect(),
+            resources: images.chain(plan.buffers.iter().map(ResourceRow::of_buffer)).chain(staging).collect(),
             left_out: left_out.collect(),
             resource_bytes: plan.bytes(),
         }
@@ -145,6 +146,12 @@ impl ResourceRow {
             bytes: buffer.bytes,
             lifetime: lifetime(buffer.lifetime),
         }
+    }
+
+    /// The mapped memory through which the contents of a scene that moves change.
+    fn staging(bytes: u64) -> Self {
+        let name = "staging".to_owned();
+        Self { name, kind: "memory", extent: None, format: None, bytes, lifetime: lifetime(Lifetime::Frame) }
     }
 
     fn extent_text(&self) -> String {

@@ -143,3 +143,118 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 fn cofactors(m: DMat3) -> DMat3 {
     DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// A few roundings of numbers of order one.
+    const ROUNDING: f64 = 1e-14;
+    /// Step of a central difference, and its error: the step squared, and rounding over it.
+    const STEP: f64 = 1e-5;
+    const DIFFERENCE: f64 = 1e-9;
+
+    fn held(value: f64) -> Track<f64> {
+        Track::new(vec![(0.0, value)]).unwrap()
+    }
+
+    fn twist(rate: f64) -> Twist {
+        Twist { axis: DVec3::Y, angle: held(rate) }
+    }
+
+    fn bend(rate: f64) -> Bend {
+        Bend { along: DVec3::X, towards: DVec3::Y, angle: held(rate) }
+    }
+
+    fn wave() -> Wave {
+        Wave { along: DVec3::X, towards: DVec3::Y, amplitude: held(0.3), wavelength: 2.0, speed: 0.5 }
+    }
+
+    #[test]
+    fn a_twist_turns_each_slice_by_its_height() {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        for (p, expected) in [
+            (DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 0.0, 0.0)),
+            (DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, -1.0)),
+            (DVec3::new(0.0, -1.0, 2.0), DVec3::new(-2.0, -1.0, 0.0)),
+        ] {
+            let (to, derivative) = twist(quarter).map(p, 0.0);
+            assert!((to - expected).length() < ROUNDING, "{p}: {to}");
+            assert!((derivative.determinant() - 1.0).abs() < ROUNDING, "a twist keeps volumes");
+        }
+    }
+
+    #[test]
+    fn a_bent_line_is_an_arc_of_the_same_length_about_one_centre() {
+        let rate = 0.8;
+        let centre = DVec3::Y / rate;
+        for (h, w) in [(0.0, 0.0), (1.0, 0.0), (-2.5, 0.4), (3.0, -0.7)] {
+            let to = bend(rate).map(DVec3::new(h, w, 0.3), 0.0).0;
+            let away = (to - centre).with_z(0.0);
+            assert!((away.length() - (1.0 / rate - w)).abs() < ROUNDING && to.z == 0.3, "{to}");
+            assert!((away.x.atan2(-away.y) - rate * h).abs() < ROUNDING, "its angle is its length over the radius");
+        }
+        // Without curvature nothing moves, and next to it hardly anything.
+        let p = DVec3::new(2.0, 0.5, -1.0);
+        assert_eq!(bend(0.0).map(p, 0.0), (p, DMat3::IDENTITY));
+        assert!((bend(1e-12).map(p, 0.0).0 - p).length() < 1e-11);
+    }
+
+    #[test]
+    fn a_wave_travels_by_its_speed_and_late_times_are_exact() {
+        let at = |x: f64, time: f64| wave().map(DVec3::X * x, time).0.y;
+        assert!((at(0.5, 0.0) - 0.3).abs() < ROUNDING && at(0.0, 0.0).abs() < ROUNDING);
+        assert!((at(0.5 + 0.5 * 1.7, 1.7) - 0.3).abs() < ROUNDING, "its crest has gone half a metre a second");
+        assert!((at(0.2, 1e6 + 0.25) - at(0.2, 0.25)).abs() < ROUNDING, "a quarter of a million periods later");
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_maps() {
+        let all = Deformers { twist: Some(twist(0.7)), bend: Some(bend(-0.6)), wave: Some(wave()) };
+        let each = [
+            Deformers { twist: all.twist.clone(), ..Default::default() },
+            Deformers { bend: all.bend.clone(), ..Default::default() },
+            Deformers { wave: all.wave.clone(), ..Default::default() },
+            all,
+        ];
+        for deformers in each {
+            for p in [DVec3::new(0.3, 0.8, -0.4), DVec3::new(-1.2, 0.1, 0.9), DVec3::ZERO] {
+                let derivative = deformers.map(p, 0.3).1;
+                for axis in DVec3::AXES {
+                    let [high, low] = [1.0, -1.0].map(|side| deformers.map(p + axis * STEP * side, 0.3).0);
+                    let error = (derivative * axis - (high - low) / (2.0 * STEP)).length();
+                    assert!(error < DIFFERENCE, "{deformers:?} at {p}: {error}");
+                }
+            }
+        }
+    }
+
+    /// A flat square of small triangles, bent: the normals given by the map are those of the triangles.
+    #[test]
+    fn normals_follow_the_surface() {
+        const SIDE: u32 = 40;
+        let at =
+            |i: u32, j: u32| Vec3::new(i as f32, 0.0, -(j as f32)) * (2.0 / SIDE as f32) - Vec3::new(1.0, 0.0, -1.0);
+        let positions: Vec<Vec3> = (0..=SIDE).flat_map(|i| (0..=SIDE).map(move |j| at(i, j))).collect();
+        let index = |i: u32, j: u32| i * (SIDE + 1) + j;
+        let cell = |i: u32, j: u32| {
+            [[index(i, j), index(i + 1, j), index(i + 1, j + 1)], [index(i, j), index(i + 1, j + 1), index(i, j + 1)]]
+        };
+        let triangles = (0..SIDE).flat_map(|i| (0..SIDE).flat_map(move |j| cell(i, j))).collect();
+        let mesh = Mesh { file: String::new(), normals: vec![Vec3::Y; positions.len()], positions, triangles };
+        let map = DAffine3::from_scale_rotation_translation(
+            DVec3::splat(0.5),
+            DQuat::from_rotation_z(0.4),
+            DVec3::new(3.0, 1.0, 0.0),
+        );
+        let deformers = Deformers { twist: Some(twist(1.5)), bend: Some(bend(1.0)), wave: Some(wave()) };
+        let bent = deformers.apply(&mesh, &map, map.translation, 0.7);
+        let exact = super::super::mesh::vertex_normals(&bent.positions, &bent.triangles);
+        let inner = (1..SIDE).flat_map(|i| (1..SIDE).map(move |j| index(i, j) as usize));
+        let worst = inner.map(|k| bent.normals[k].angle_between(exact[k])).fold(0.0, f32::max);
+        // Triangles of a twentieth of a metre see the curvature to second order.
+        assert!(worst < 0.01, "{worst} rad");
+        assert!(bent.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
+    }
+}

@@ -9,6 +9,7 @@ mod no_room;
 mod render;
 mod repeat;
 mod scenes;
+mod sequence;
 mod tracers;
 
 use std::{

@@ -44,6 +44,13 @@ fn a_tracer_that_refuses_says_why() {
 }
 
 #[test]
+fn a_class_with_several_photons_a_sample_is_not_compared() {
+    let ran = nephroid("tracers ring --set light.paths=all:4 --set light.side=16");
+    assert_eq!(ran.code, Some(2), "{}", ran.err);
+    assert!(ran.err.contains("class all:4") && ran.err.contains("set light.paths"), "{}", ran.err);
+}
+
+#[test]
 fn the_tracer_is_not_for_the_user_to_set() {
     let ran = nephroid("tracers glass-sphere --set light.tracer=march");
     assert_eq!(ran.code, Some(2), "{}", ran.err);

@@ -172,7 +172,7 @@ fn a_mesh_that_cannot_be_read_is_named() {
 #[test]
 fn a_scene_that_cannot_be_read_is_named() {
     judge(&load("glass-spere", &[]).unwrap_err(), "", "no such scene", "did you mean `glass-sphere`?");
-    judge(&load("xylophone", &[]).unwrap_err(), "", "no such scene", "choose one of `bunny`, ");
+    judge(&load("xylophone", &[]).unwrap_err(), "", "no such scene", "choose one of `bending`, ");
     judge(&load("nowhere/none", &[]).unwrap_err(), "", "No such file", "nephroid scenes");
     judge(&load("none.toml", &[]).unwrap_err(), "", "No such file", "nephroid scenes");
     judge(&load("./", &[]).unwrap_err(), "", "a folder", "nephroid scenes");

@@ -58,7 +58,18 @@ fn shipped_scenes_load_by_name_and_have_titles() {
     let names: Vec<_> = Scene::shipped().map(|(name, _)| name).collect();
     assert_eq!(
         names,
-        ["bunny", "diffuse", "flat-water", "glass-sphere", "moving-sphere", "null", "paraboloid", "ring", "sine-water"]
+        [
+            "bending",
+            "bunny",
+            "diffuse",
+            "flat-water",
+            "glass-sphere",
+            "moving-sphere",
+            "null",
+            "paraboloid",
+            "ring",
+            "sine-water"
+        ]
     );
     for (name, title) in Scene::shipped() {
         let scene = load(name, &[]).unwrap_or_else(|error| panic!("{error}"));

@@ -62,6 +62,10 @@ fn what_no_image_shows_is_refused_with_a_remedy() {
         }
         planned(scene, &[]).unwrap();
     }
+    for tracer in tracers() {
+        let text = planned(scene("ring", &[]), &[("light.tracer", tracer), ("light.paths", "all:4")]).unwrap_err();
+        assert!(text.contains("class all:4") && text.contains("use light.tracer=bvh"), "{text}");
+    }
     let text = planned(scene("flat-water", &[]), &[("light.total_reflection", "follow")]).unwrap_err();
     assert!(text.contains("class transmit-1") && text.contains("light.total_reflection=drop"), "{text}");
 }

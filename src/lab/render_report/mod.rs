@@ -202,28 +202,34 @@ impl Frame<Vec<f64>> {
     }
 }
 
-fn photons(account: &Account) -> Map<String, Value> {
+pub(in crate::lab) fn photons(account: &Account) -> Map<String, Value> {
     let counts = BUCKETS.iter().zip(account.counts).map(|(name, count)| (name.to_string(), count.into()));
     counts.chain([("bent".to_owned(), account.bent.into())]).collect()
 }
 
 impl EnergyRow {
     fn new(energy: &Energy, account: &Account) -> Self {
-        let flux = BUCKETS.iter().zip(account.flux_w).map(|(name, flux)| (name.to_string(), flux.into()));
         Self {
             emitted_w: energy.emitted_w,
             valid_w: energy.valid_w,
             deposited_w: energy.deposited_w,
             ratio: energy.ratio,
-            flux_w: flux.chain([("other_paths".to_owned(), account.other_paths_w.into())]).collect(),
+            flux_w: flux(account),
         }
     }
+}
+
+/// Watts by how they ended.
+pub(in crate::lab) fn flux(account: &Account) -> Map<String, Value> {
+    let flux = BUCKETS.iter().zip(account.flux_w).map(|(name, flux)| (name.to_string(), flux.into()));
+    flux.chain([("other_paths".to_owned(), account.other_paths_w.into())]).collect()
 }
 
 /// Share of the flux arriving at receivers that may be missing from the map, for one reason, before it is said.
 const MISSING: f64 = 0.01;
 
-fn warnings(account: &Account, job: &Job) -> Vec<String> {
+/// What a reader of the numbers must know of the light.
+pub(in crate::lab) fn warnings(account: &Account, job: &Job) -> Vec<String> {
     outside_map(account, &job.camera).into_iter().chain(no_layer(account, &job.settings)).collect()
 }
 

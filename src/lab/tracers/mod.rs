@@ -13,9 +13,10 @@ use crate::{
     gpu::{FrameTimes, Gpu},
     passes::{
         PlanError,
-        light::{SIDE, TRACER},
+        light::{self, SIDE, TRACER},
     },
     renderer::{Frame, Job, Providers, RenderError, Renderer, all_settings},
+    scene::PathClass,
     stats,
 };
 
@@ -46,7 +47,7 @@ pub struct Compared {
 /// go on. What the job says of the tracer, the method and the camera does not count.
 ///
 /// # Errors
-/// Those of `bvh`, and of any other but that it refuses the scene.
+/// Those of `bvh`, and of any other but that it refuses the scene; in class `all:N`, which no other tracer has, always.
 pub fn compare_tracers(
     gpu: &Gpu,
     job: &Job,
@@ -54,6 +55,9 @@ pub fn compare_tracers(
     map_texel: f64,
     watch: &mut dyn FnMut(&str) -> ControlFlow<()>,
 ) -> Result<Vec<Compared>, LabError> {
+    if let class @ PathClass::All(_) = light::paths(&job.scene, &job.settings) {
+        return Err(RenderError::from(several(class)).into());
+    }
     let mut trace = |tracer: &str| {
         if watch(tracer).is_break() { Err(LabError::Interrupted) } else { Ok(traced(gpu, job, tracer, repeat)) }
     };
@@ -74,6 +78,14 @@ pub fn compare_tracers(
         });
     }
     Ok(all)
+}
+
+fn several(class: PathClass) -> PlanError {
+    PlanError::Refused {
+        what: format!("a comparison of tracers in class {class}"),
+        reason: "each light sample leaves several photons, and only bvh finds them".into(),
+        remedy: "set light.paths to reflect-1, transmit-1 or transmit-2".into(),
+    }
 }
 
 type Traced = (Vec<Vec<keep::End>>, Vec<(String, f64)>);

@@ -128,7 +128,6 @@ struct GatherPush {
     side: i32,
     diameter: f32,
     light: u32,
-    scale: f32,
 }
 
 impl PlannedMaps {
@@ -145,8 +144,7 @@ impl Planned for PlannedMaps {
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
         let n = job.photons.side;
         let light = job.emissions[view].light as u32;
-        let scale = self.fixed.as_ref().map_or(1.0, Fixed::scale);
-        let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, light, scale };
+        let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, light };
         let pass = job.photons.define(job.plan.pass(&name_of("maps/gather")));
         let pass = pass.with(job.photons.fetch(&[Column::Hit, Column::Flux])).with([self.views()]);
         if let Some(fixed) = &self.fixed {

@@ -26,16 +26,8 @@ const GROUP: u32 = 8;
 /// Sums of a map in fixed point.
 pub struct Fixed {
     sums: BufferId,
-    /// W a unit, a power of two.
-    unit: f64,
-}
-
-/// Push constants of `glsl/maps/resolve.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ResolvePush {
-    side: i32,
-    unit: f32,
+    /// Units a watt, and watts a unit: powers of two, which may be others when the scene has moved.
+    unit: BufferId,
 }
 
 /// Whether the map's sums are in fixed point, and where; `None` where blending was asked for, or no buffer holds them.
@@ -47,8 +39,9 @@ pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
             format!("{bytes} bytes of sums are more than a buffer of 128 MiB holds: splats are blended")
         }
         _ => {
-            let sums = job.plan.upload("maps/sums", &vec![0u8; bytes as usize]);
-            return Some(Fixed { sums, unit: unit(job.scene, job.emissions, job.photons.side) });
+            let sums = job.plan.upload_once("maps/sums", &vec![0u8; bytes as usize]);
+            let unit = unit(job.scene, job.emissions, job.photons.side);
+            return Some(Fixed { sums, unit: job.plan.upload("maps/unit", &[unit.recip() as f32, unit as f32]) });
         }
     };
     job.plan.leave_out("maps/resolve", reason);
@@ -75,15 +68,14 @@ fn most(scene: &Scene, emission: &Emission, side: u32) -> f64 {
 }
 
 impl Fixed {
-    /// Units a watt.
-    pub fn scale(&self) -> f32 {
-        self.unit.recip() as f32
-    }
-
     /// Adds the photons of one view to the sums.
     pub fn gather<T: bytemuck::NoUninit>(&self, pass: crate::gpu::PassBuilder<'_>, push: &T, [side, layers]: [u32; 2]) {
         let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), layers];
-        pass.push(push).write("maps_sums", self.sums).dispatch("maps/gather_fixed.comp", groups, GROUP * GROUP);
+        pass.push(push).read("maps_unit", self.unit).write("maps_sums", self.sums).dispatch(
+            "maps/gather_fixed.comp",
+            groups,
+            GROUP * GROUP,
+        );
     }
 
     /// The map of all views' sums.
@@ -93,7 +85,8 @@ impl Fixed {
             .pass("maps/resolve")
             .write("maps_sums", self.sums)
             .store("maps_map", map)
-            .push(&ResolvePush { side: side as i32, unit: self.unit as f32 })
+            .read("maps_unit", self.unit)
+            .push(&(side as i32))
             .dispatch("maps/resolve.comp", groups, GROUP * GROUP);
     }
 }

@@ -12,10 +12,9 @@ use super::{
 };
 use crate::scene::Mesh;
 
-/// A refitted tree is built again once a ray is expected to cost this many times what it did when the tree was built.
-/// The knot of `bending`, twisted from rest to its most, is refitted in 0.5 ms and built in 5.5 ms on one core, and at
-/// 1.3 times the cost its photons take 1.1 times as long: a tenth of a frame of few milliseconds, for which one pays
-/// now and then, and not in every frame.
+/// A refitted tree is built again once a ray is expected to cost this many times what it did when the tree was built: a
+/// third more boxes and triangles. The knot of `bending` (5,760 triangles) is laid out in 1.0 ms with its tree refitted and
+/// in 2.5 to 3.6 ms with it built (one core); its twist of 45° a metre never wears it so far, eleven turns a metre do.
 pub const WORN: f64 = 1.3;
 
 /// The trees of a scene's meshes, at the time at which it was last laid out.

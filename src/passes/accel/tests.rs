@@ -172,3 +172,27 @@ fn what_float32_cannot_square_is_named() {
     let missing = with(Shape::Mesh { mesh: Arc::new(mesh), to_world: DAffine3::IDENTITY });
     assert_eq!(missing, "`odd`: triangle 0 of `m.obj` names a vertex that the mesh does not have");
 }
+
+/// A twist of some degrees is followed by refitting; one that winds the knot up wears the tree, which is built again.
+#[test]
+fn trees_are_refitted_until_they_are_worn() {
+    let keys = "[{ time = 0, value = 0 }, { time = 1, value = 4000 }]";
+    let wound = ("objects.knot.motion.twist.angle".to_owned(), keys.to_owned());
+    let scene = Scene::load("bending", &[wound, ("objects.knot.motion.period".to_owned(), "2".to_owned())]).unwrap();
+    let mut trees = Trees::default();
+    let mut at = |time: f64| {
+        let start = std::time::Instant::now();
+        let built = SceneArrays::build_with(&scene.at(time), &mut trees).unwrap();
+        println!(
+            "{time} s: {:.2} ms, {} refitted, {} rebuilt",
+            start.elapsed().as_secs_f64() * 1e3,
+            trees.refitted,
+            trees.rebuilt
+        );
+        (built.nodes.len(), trees.refitted, trees.rebuilt)
+    };
+    let (nodes, ..) = at(0.0);
+    assert_eq!(at(0.002), (nodes, 1, 0), "eight degrees a metre");
+    assert_eq!(at(1.0), (nodes, 1, 1), "eleven turns a metre");
+    assert_eq!(at(1.0), (nodes, 2, 1), "what was built there fits");
+}

@@ -208,6 +208,23 @@ mod tests {
     }
 
     #[test]
+    fn a_refitted_tree_holds_what_has_moved_and_costs_more_the_more_it_is_torn() {
+        let here = boxes(1000, |i| (i * 7919 % 1000) as f32);
+        let mut tree = Tree::over(&here, 40);
+        let built = tree.cost();
+        tree.refit(&here);
+        assert_eq!(tree.cost(), built, "where nothing has moved nothing changes");
+        let along = boxes(1000, |i| 3.0 + 2.0 * (i * 7919 % 1000) as f32);
+        tree.refit(&along);
+        check(&tree, &along);
+        assert!(tree.cost() < 1.1 * built, "drawn out it is as good: {} of {built}", tree.cost());
+        let torn = boxes(1000, |i| (i * 104_729 % 1000) as f32);
+        tree.refit(&torn);
+        check(&tree, &torn);
+        assert!(tree.cost() > 10.0 * built, "{} of {built}", tree.cost());
+    }
+
+    #[test]
     fn equal_boxes_make_no_deep_tree() {
         let same = boxes(5000, |_| 1.0);
         assert!(

@@ -57,7 +57,7 @@ impl Tracer {
         if follows && class != PathClass::Transmit2 {
             return Err(PlanError::Refused {
                 what: format!("light.total_reflection=follow in class {class}"),
-                reason: "no light of it goes through a body, in which it could go on".into(),
+                reason: "only in class transmit-2 can light go on inside a body and still be of its chain".into(),
                 remedy: "set light.paths=transmit-2, or light.total_reflection=drop".into(),
             });
         }
