@@ -30,6 +30,7 @@ fn padded(plan: &Plan) -> u64 {
     let image = |i: &ImageDecl| tiles(i.extent[0]) * tiles(i.extent[1]) * u64::from(i.layers) * i.format.bytes();
     plan.images.iter().map(|i| image(i) + PADDING).sum::<u64>()
         + plan.buffers.iter().map(|b| b.bytes + PADDING).sum::<u64>()
+        + plan.staging_bytes() // of scenes that move
 }
 
 /// Renders a frame and takes its account; the plan, and bytes that live for it.

@@ -13,6 +13,7 @@ use crate::{
         eye::SurfaceProvider,
         light::{Column, Emission, Photons},
     },
+    scene::Scene,
     settings::{Setting, Settings},
     view::Extent,
 };
@@ -42,6 +43,8 @@ pub struct Job<'a> {
     pub plan: &'a mut Plan,
     /// The settings.
     pub settings: &'a Settings,
+    /// The scene.
+    pub scene: &'a Scene,
     /// The rectangles to cover: the receiver region or the scene's extent first, then what else may be seen.
     pub receivers: &'a [Receiver],
     /// All that the scene holds.

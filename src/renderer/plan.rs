@@ -143,8 +143,15 @@ fn photon_passes(
     let views = plan.upload("light/views", &views);
     let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views };
     let tracer = light::Tracer::plan(plan, &bench)?;
-    let mut work =
-        methods::Job { plan, settings, receivers: &receivers, everything, emissions: &emissions, photons: &photons };
+    let mut work = methods::Job {
+        plan,
+        settings,
+        scene,
+        receivers: &receivers,
+        everything,
+        emissions: &emissions,
+        photons: &photons,
+    };
     let mut planned = method.plan(&mut work)?;
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {

@@ -77,7 +77,12 @@ fn what_has_no_layer_is_booked() {
 fn arrays_are_made_for_this_class_alone() {
     let gpu = gpu();
     for (class, layers, array) in [("all:4", 8, true), ("transmit-2", 1, false)] {
-        let job = job_of(scene("glass-sphere", &[]), &[("light.paths", class), ("light.side", "32")], "region", [8, 8]);
+        let job = job_of(
+            scene("glass-sphere", &[]),
+            &[("light.paths", class), ("light.side", "32"), ("light.layers", "8")],
+            "region",
+            [8, 8],
+        );
         let renderer = rendered(&gpu, &job);
         let Some(Resource::Image(image)) = renderer.plan().find("light/photons.hit") else { panic!("no hits") };
         let image: ImageId = image;

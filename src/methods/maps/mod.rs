@@ -2,7 +2,10 @@
 //! Based on: C. Wyman, *Hierarchical Caustic Maps*, I3D 2008. Differs: exact tracer, own receiving view, weights that
 //! sum to one. Not implemented: its gathers `copy`, `hierarchical`, `combine` and `varying`.
 
+mod sums;
 mod views;
+
+use sums::Fixed;
 
 use super::{Job, Method, Planned, Provided, Slot};
 use crate::{
@@ -32,7 +35,7 @@ static GATHER: Choice = Choice {
     key: "maps.gather",
     default: "fetch",
     words: &["fetch"],
-    doc: "fetch: an instanced draw over the photons, without a copy (section 4)",
+    doc: "fetch: each photon is fetched from where it was traced, without a copy (section 4)",
 };
 
 static RECEIVERS: Choice = Choice {
@@ -42,8 +45,20 @@ static RECEIVERS: Choice = Choice {
     doc: "all: a layer of the map for each diffuse quad that the camera may see; region: for the region's receiver alone",
 };
 
-static SETTINGS: &[Setting] =
-    &[Setting::Whole(&SIDE), Setting::Whole(&SPLAT_SIZE), Setting::Choice(&GATHER), Setting::Choice(&RECEIVERS)];
+static SUM: Choice = Choice {
+    key: "maps.sum",
+    default: "fixed",
+    words: &["fixed", "blend"],
+    doc: "fixed: exact, in 64-bit fixed point (beyond 128 MiB of sums, blend); blend: an instanced draw, blended in float32",
+};
+
+static SETTINGS: &[Setting] = &[
+    Setting::Whole(&SIDE),
+    Setting::Whole(&SPLAT_SIZE),
+    Setting::Choice(&GATHER),
+    Setting::Choice(&SUM),
+    Setting::Choice(&RECEIVERS),
+];
 
 /// Hierarchical caustic maps.
 pub struct Maps;
@@ -78,7 +93,7 @@ impl Method for Maps {
     }
 
     fn stages(&self) -> &'static [&'static str] {
-        &["maps/gather"]
+        &["maps/gather", "maps/resolve"]
     }
 
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
@@ -91,6 +106,7 @@ impl Method for Maps {
             diameter,
             map: job.plan.image_array("maps/map", [side, side], layers, Format::Rgba32f, Lifetime::Frame),
             views: job.plan.upload("maps/views", &views),
+            fixed: sums::fixed(job, side, layers),
             drawn: false,
         }))
     }
@@ -101,10 +117,11 @@ struct PlannedMaps {
     diameter: u32,
     map: ImageId,
     views: BufferId,
+    fixed: Option<Fixed>,
     drawn: bool,
 }
 
-/// Push constants of `glsl/maps/gather_fetch.vert` and `splat.frag`.
+/// Push constants of `glsl/maps/gather_fixed.comp`, `gather_fetch.vert` and `splat.frag`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct GatherPush {
@@ -127,19 +144,22 @@ impl Planned for PlannedMaps {
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
         let n = job.photons.side;
         let light = job.emissions[view].light as u32;
-        let first = !std::mem::replace(&mut self.drawn, true);
         let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, light };
-        job.photons
-            .define(job.plan.pass(&name_of("maps/gather")))
-            .with(job.photons.fetch(&[Column::Hit, Column::Flux]))
-            .with([self.views()])
-            .push(&push)
-            .target_layers(self.map, first.then_some([0.0; 4]), Blend::Add)
-            .draw(
-                &["maps/gather_fetch.vert", "maps/splat.frag"],
-                Topology::Points,
-                vec![Draw { vertices: n, first_vertex: 0, instances: n * job.photons.layers(), first_instance: 0 }],
-            );
+        let pass = job.photons.define(job.plan.pass(&name_of("maps/gather")));
+        let pass = pass.with(job.photons.fetch(&[Column::Hit, Column::Flux])).with([self.views()]);
+        if let Some(fixed) = &self.fixed {
+            fixed.gather(pass, &push, [n, job.photons.layers()]);
+            if view + 1 == job.emissions.len() {
+                fixed.resolve(job, self.map, self.side);
+            }
+            return;
+        }
+        let first = !std::mem::replace(&mut self.drawn, true);
+        pass.push(&push).target_layers(self.map, first.then_some([0.0; 4]), Blend::Add).draw(
+            &["maps/gather_fetch.vert", "maps/splat.frag"],
+            Topology::Points,
+            vec![Draw { vertices: n, first_vertex: 0, instances: n * job.photons.layers(), first_instance: 0 }],
+        );
     }
 
     fn provide(&self) -> Provided {

@@ -1,0 +1,92 @@
+//! How splats are summed: exactly, in fixed point, or as the paper does, by blending float32.
+//!
+//! Blending n photons alike into one texel errs by up to n 2⁻²⁵ of it: each addition rounds the sum the same way. In
+//! fixed point each photon is rounded once, to its 2⁻³¹, and what follows is exact.
+
+use super::{Job, SUM};
+use crate::{
+    gpu::{BufferId, ImageId},
+    passes::light::Emission,
+    scene::{LightKind, Scene},
+};
+
+/// Every Vulkan device binds storage buffers of this size (`maxStorageBufferRange`).
+const BOUND: u64 = 1 << 27;
+/// Bytes a texel: three bands of 64 bits.
+const BYTES: u64 = 24;
+/// Bits by which the faintest view's photons are told apart, unless the brightest ones' ask for more room.
+const FINE: i32 = 31;
+/// Bits that the brightest photon takes at most: 2^25 of it fit above.
+const COARSE: i32 = 38;
+/// Exponents of float32.
+const EXPONENTS: std::ops::RangeInclusive<i32> = -126..=126;
+/// Invocations along one side of work groups.
+const GROUP: u32 = 8;
+
+/// Sums of a map in fixed point.
+pub struct Fixed {
+    sums: BufferId,
+    /// Units a watt, and watts a unit: powers of two, which may be others when the scene has moved.
+    unit: BufferId,
+}
+
+/// Whether the map's sums are in fixed point, and where; `None` where blending was asked for, or no buffer holds them.
+pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
+    let bytes = u64::from(side).pow(2) * u64::from(layers) * BYTES;
+    let reason = match job.settings.choice(&SUM) {
+        "blend" => "maps.sum = blend".to_owned(),
+        _ if bytes > BOUND => {
+            format!("{bytes} bytes of sums are more than a buffer of 128 MiB holds: splats are blended")
+        }
+        _ => {
+            let sums = job.plan.upload_once("maps/sums", &vec![0u8; bytes as usize]);
+            let unit = unit(job.scene, job.emissions, job.photons.side);
+            return Some(Fixed { sums, unit: job.plan.upload("maps/unit", &[unit.recip() as f32, unit as f32]) });
+        }
+    };
+    job.plan.leave_out("maps/resolve", reason);
+    None
+}
+
+/// The flux that a unit stands for: a power of two, so that scaling by it rounds nothing.
+fn unit(scene: &Scene, emissions: &[Emission], side: u32) -> f64 {
+    let fluxes = emissions.iter().map(|e| most(scene, e, side)).filter(|flux| *flux > 0.0);
+    let [least, most] = fluxes.fold([f64::INFINITY, 0.0], |[least, most], flux| [least.min(flux), most.max(flux)]);
+    let exponent = |flux: f64, bits: i32| flux.log2().ceil() as i32 - bits;
+    let exponent = exponent(least, FINE).max(exponent(most, COARSE)); // of nothing: the least and the most integer
+    f64::from(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())).exp2()
+}
+
+/// At most what a photon of a view carries, W: the widest texel's footprint in the light's brightest band and direction.
+fn most(scene: &Scene, emission: &Emission, side: u32) -> f64 {
+    let power = match scene.lights[emission.light].kind {
+        LightKind::Directional { irradiance, .. } => irradiance,
+        LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
+    };
+    let window = (emission.view.high - emission.view.low).abs() / f64::from(side);
+    power.into_iter().fold(0.0, f64::max) * window.x * window.y
+}
+
+impl Fixed {
+    /// Adds the photons of one view to the sums.
+    pub fn gather<T: bytemuck::NoUninit>(&self, pass: crate::gpu::PassBuilder<'_>, push: &T, [side, layers]: [u32; 2]) {
+        let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), layers];
+        pass.push(push).read("maps_unit", self.unit).write("maps_sums", self.sums).dispatch(
+            "maps/gather_fixed.comp",
+            groups,
+            GROUP * GROUP,
+        );
+    }
+
+    /// The map of all views' sums.
+    pub fn resolve(&self, job: &mut Job<'_>, map: ImageId, side: u32) {
+        let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), job.plan.image_decl(map).layers];
+        job.plan
+            .pass("maps/resolve")
+            .write("maps_sums", self.sums)
+            .store("maps_map", map)
+            .read("maps_unit", self.unit)
+            .push(&(side as i32))
+            .dispatch("maps/resolve.comp", groups, GROUP * GROUP);
+    }
+}
