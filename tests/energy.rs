@@ -6,10 +6,11 @@ use common::{
     gpu,
     picture::{Picture, all_ended, job_of, picture, rewritten, scene, written},
 };
+use glam::DVec3;
 use nephroid::{
     gpu::Gpu,
     passes::account::Account,
-    scene::{PathClass, Scene},
+    scene::{Light, LightKind, PathClass, Scene},
 };
 
 /// Flux in the finished map against the flux of the photons it took: float32 sums in texels, weights that sum to one.
@@ -73,10 +74,9 @@ fn shipped_scenes_under_their_own_sun() {
 fn shipped_scenes_under_a_point_light() {
     let gpu = gpu();
     for (name, _) in Scene::shipped() {
-        let lamp = "\n[lights.lamp.point]\nposition = [0.5, 7.0, 1.0]\nintensity = [40.0, 30.0, 20.0]\n";
-        let mut scene =
-            written(&rewritten(name, &[], lamp), &[("bunny-lo.obj", include_str!("../scenes/bunny-lo.obj"))]);
-        scene.lights.retain(|light| light.name == "lamp");
+        let mut scene = scene(name, &[]);
+        let lamp = LightKind::Point { position: DVec3::new(0.5, 7.0, 1.0), intensity: [40.0, 30.0, 20.0] };
+        scene.lights = vec![Light { name: "lamp".to_owned(), kind: lamp }];
         all_ways(&gpu, &format!("{name}, lamp"), &scene);
     }
 }

@@ -80,7 +80,7 @@ impl Deformers {
             ((back * (p - aside)).as_vec3(), n.try_normalize().map_or(*normal, |n| n.as_vec3()))
         };
         let (positions, normals) = mesh.positions.iter().zip(&mesh.normals).map(moved).unzip();
-        Mesh { file: mesh.file.clone(), positions, normals, triangles: mesh.triangles.clone() }
+        Mesh { file: mesh.file.clone(), positions, normals, triangles: mesh.triangles.clone(), sheet: mesh.sheet }
     }
 
     fn map(&self, p: DVec3, time: f64) -> Map {
