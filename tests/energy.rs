@@ -6,10 +6,11 @@ use common::{
     gpu,
     picture::{Picture, all_ended, job_of, picture, rewritten, scene, written},
 };
+use glam::DVec3;
 use nephroid::{
     gpu::Gpu,
     passes::account::Account,
-    scene::{PathClass, Scene},
+    scene::{Light, LightKind, PathClass, Scene},
 };
 
 /// Flux in the finished map against the flux of the photons it took: float32 sums in texels, weights that sum to one.
@@ -19,10 +20,6 @@ const SUMS: f64 = 1e-5;
 /// The picture's flux against the map's: look-ups between texels, which weigh a texel by up to 10⁻³ too much or little
 /// where pixels and texels beat, and the map's margin, which the picture does not show.
 const PICTURED: f64 = 0.005;
-
-/// What shipped scenes name beside them.
-const MESHES: [(&str, &str); 2] =
-    [("bunny-lo.obj", include_str!("../scenes/bunny-lo.obj")), ("knot.obj", include_str!("../scenes/knot.obj"))];
 
 const SIDES: [(&str, &str); 2] = [("light.side", "256"), ("maps.side", "256")];
 
@@ -77,9 +74,9 @@ fn shipped_scenes_under_their_own_sun() {
 fn shipped_scenes_under_a_point_light() {
     let gpu = gpu();
     for (name, _) in Scene::shipped() {
-        let lamp = "\n[lights.lamp.point]\nposition = [0.5, 7.0, 1.0]\nintensity = [40.0, 30.0, 20.0]\n";
-        let mut scene = written(&rewritten(name, &[], lamp), &MESHES);
-        scene.lights.retain(|light| light.name == "lamp");
+        let mut scene = scene(name, &[]);
+        let lamp = LightKind::Point { position: DVec3::new(0.5, 7.0, 1.0), intensity: [40.0, 30.0, 20.0] };
+        scene.lights = vec![Light { name: "lamp".to_owned(), kind: lamp }];
         all_ways(&gpu, &format!("{name}, lamp"), &scene);
     }
 }

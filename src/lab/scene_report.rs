@@ -127,7 +127,7 @@ impl ObjectRow {
             Shape::Sphere { .. } => ("sphere", None),
             Shape::Quad { .. } => ("quad", None),
             Shape::Canonical { kind, .. } => (kind.name(), None),
-            Shape::Mesh { mesh, .. } => ("mesh", Some(mesh)),
+            Shape::Mesh { mesh, .. } => (mesh.sheet.map_or("mesh", |sheet| sheet.kind), Some(mesh)),
         };
         Self {
             name: object.name.clone(),
@@ -135,7 +135,7 @@ impl ObjectRow {
             size_m: object.shape.bounds().map_or(DVec3::ZERO, |[low, high]| high - low).to_array(),
             material: scene.materials[object.material].name.clone(),
             triangles: mesh.map(|mesh| mesh.triangles.len() as u64),
-            file: mesh.map(|mesh| mesh.file.clone()),
+            file: mesh.map(|mesh| mesh.file.clone()).filter(|file| !file.is_empty()),
             visible_to_camera: object.visible_to_camera,
         }
     }

@@ -37,7 +37,7 @@ pub fn warnings(objects: &[Object], materials: &[Material]) -> Vec<String> {
     for object in objects {
         let dielectric = matches!(materials[object.material].kind, MaterialKind::Dielectric { .. });
         let Shape::Mesh { mesh, to_world } = &object.shape else { continue };
-        if dielectric {
+        if dielectric && mesh.sheet.is_none() {
             let faults = known.entry(std::sync::Arc::as_ptr(mesh)).or_insert_with(|| Faults::of(mesh));
             all.extend(faults.told(to_world).map(|fault| format!("`{}` ({}) {fault}", object.name, mesh.file)));
         }
@@ -176,7 +176,7 @@ mod tests {
         let corners: Vec<u32> = quads.iter().flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).collect();
         let positions: Vec<Vec3> = corners.iter().map(|&k| corner(k)).collect();
         let triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        Mesh { file: "cube.obj".to_owned(), normals: vec![Vec3::Y; positions.len()], positions, triangles }
+        Mesh { file: "cube.obj".to_owned(), normals: vec![Vec3::Y; positions.len()], positions, triangles, sheet: None }
     }
 
     #[test]
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn a_mesh_of_nothing_has_no_fault() {
-        let nothing = Mesh { file: String::new(), positions: vec![], normals: vec![], triangles: vec![] };
+        let nothing = Mesh { file: String::new(), positions: vec![], normals: vec![], triangles: vec![], sheet: None };
         assert_eq!(Faults::of(&nothing), Faults::default());
     }
 }

@@ -97,6 +97,8 @@ pub struct ObjectFile {
     pub cylinder: Option<CylinderFile>,
     pub paraboloid: Option<ParaboloidFile>,
     pub sine: Option<SineFile>,
+    pub heights: Option<HeightsFile>,
+    pub wave: Option<WaveFile>,
     pub mesh: Option<MeshFile>,
     pub motion: Option<ObjectMotionFile>,
 }
@@ -166,6 +168,43 @@ pub struct SineFile {
     pub v: Floats<3>,
     pub amplitude: f64,
     pub wavelength: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeightsFile {
+    pub file: String,
+    pub center: Floats<3>,
+    pub u: Floats<3>,
+    pub v: Floats<3>,
+    /// Of a pixel of value 1; of PNG, white.
+    pub height: f64,
+    /// Height of a pixel of value 0.
+    #[serde(default)]
+    pub base: f64,
+    /// Cells along the longer side; without it one between two pixels.
+    pub grid: Option<u32>,
+}
+
+/// Constants that are left out are the paper's.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WaveFile {
+    pub center: Floats<3>,
+    pub u: Floats<3>,
+    pub v: Floats<3>,
+    /// Of one unit of the wave; else the edge along u.
+    pub length: Option<f64>,
+    /// The wave's own coordinates at the centre.
+    pub middle: Option<Floats<2>>,
+    pub octaves: Option<u32>,
+    pub wave_size: Option<f64>,
+    pub factor: Option<f64>,
+    pub speed: Option<f64>,
+    pub vertex_size: Option<f64>,
+    #[serde(default)]
+    pub time: f64,
+    pub grid: Option<u32>,
 }
 
 #[derive(Deserialize)]

@@ -1,7 +1,7 @@
 //! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
 
 /// Tables that say of what kind their parent is; a dotted key may leave them out.
-pub const KINDS: [&str; 17] = [
+pub const KINDS: [&str; 19] = [
     "box",
     "conductor",
     "cylinder",
@@ -9,6 +9,7 @@ pub const KINDS: [&str; 17] = [
     "diffuse",
     "directional",
     "disk",
+    "heights",
     "mesh",
     "mirror",
     "orthographic",
@@ -19,6 +20,7 @@ pub const KINDS: [&str; 17] = [
     "sine",
     "sphere",
     "spot",
+    "wave",
 ];
 
 /// Keys that a table may have. The deserialiser judges them in the end; the test below holds the two together.
@@ -50,6 +52,8 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
             "cylinder",
             "paraboloid",
             "sine",
+            "heights",
+            "wave",
             "mesh",
             "motion",
         ],
@@ -64,6 +68,21 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _, "cylinder"] => &["base", "axis", "radius", "height", "arc", "middle"],
         ["objects", _, "paraboloid"] => &["vertex", "axis", "focal_length", "rim", "from", "middle"],
         ["objects", _, "sine"] => &["center", "u", "v", "amplitude", "wavelength"],
+        ["objects", _, "heights"] => &["file", "center", "u", "v", "height", "base", "grid"],
+        ["objects", _, "wave"] => &[
+            "center",
+            "u",
+            "v",
+            "length",
+            "middle",
+            "octaves",
+            "wave_size",
+            "factor",
+            "speed",
+            "vertex_size",
+            "time",
+            "grid",
+        ],
         ["objects", _, "mesh"] => &["file", "fit", "center", "rotate"],
         ["objects", _, "motion"] => &["position", "rotate", "scale", "twist", "bend", "wave", "period"],
         ["objects", _, "motion", "twist"] => &["axis", "angle"],
@@ -110,6 +129,8 @@ mod tests {
         assert_eq!(keys(&["objects", "", "cylinder"]), known::<file::CylinderFile>());
         assert_eq!(keys(&["objects", "", "paraboloid"]), known::<file::ParaboloidFile>());
         assert_eq!(keys(&["objects", "", "sine"]), known::<file::SineFile>());
+        assert_eq!(keys(&["objects", "", "heights"]), known::<file::HeightsFile>());
+        assert_eq!(keys(&["objects", "", "wave"]), known::<file::WaveFile>());
         assert_eq!(keys(&["objects", "", "mesh"]), known::<file::MeshFile>());
         assert_eq!(keys(&["objects", "", "motion"]), known::<motion_files::ObjectMotionFile>());
         assert_eq!(keys(&["objects", "", "motion", "twist"]), known::<motion_files::TwistFile>());

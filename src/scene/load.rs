@@ -200,6 +200,7 @@ fn misfit(locator: &Locator, error: &toml::de::Error) -> SceneError {
 fn plain(expected: &str) -> (&str, &str) {
     match expected {
         "f64" => ("a number", "write a number, without quotes"),
+        "u32" => ("a whole number", "write one of zero or more, without quotes"),
         "a string" => ("a string", "put the text in quotes"),
         "a boolean" => ("true or false", "write true or false, without quotes"),
         "an array of 2 numbers" => (expected, "write `[along u, along v]`"),

@@ -10,7 +10,7 @@ use super::{
 };
 
 /// Largest coordinate or size, m: its square, and areas, must stay finite and exact enough in single precision.
-const LARGEST: f64 = 1e9;
+pub const LARGEST: f64 = 1e9;
 /// Smallest size, m, for the same reason.
 const SMALLEST: f64 = 1e-9;
 /// Largest irradiance (W/m²), intensity (W/sr) or absorption (1/m); products of three stay within single precision.

@@ -20,7 +20,7 @@ impl Scene {
     ///
     /// A dielectric sphere holds what is nearer to its centre than its radius, a box what is within its sides. A mesh holds what its
     /// triangles wind round by more than a half (Van Oosterom and Strackee 1983, "The solid angle of a plane triangle",
-    /// eq. 8). A quad or a disk is an open interface: it holds what lies behind it, on the side that its normal points
+    /// eq. 8). A quad, a disk or a sheet is an open interface: it holds what lies behind it, on the side that its normal points
     /// away from, and within its outline as seen along the normal, however deep.
     ///
     /// Of several the innermost counts: closed shapes before open interfaces; of closed shapes the one with the
@@ -79,6 +79,10 @@ fn hold(shape: &Shape, p: DVec3) -> Option<Hold> {
             let depth = -way.dot(u.cross(*v).normalize_or_zero());
             let within = |edge: DVec3| way.dot(edge).abs() <= edge.length_squared();
             (depth > 0.0 && within(*u) && within(*v)).then_some(Hold::Open(depth))
+        }
+        Shape::Mesh { mesh, to_world } if mesh.sheet.is_some() => {
+            let depth = mesh.depth_below(to_world.inverse().transform_point3(p))?;
+            Some(Hold::Open(depth * to_world.matrix3.z_axis.length()))
         }
         Shape::Mesh { mesh, to_world } => {
             // Outside its box a closed mesh winds round nothing; most points are spared the sum.
@@ -139,7 +143,7 @@ mod tests {
         positions[7] = notch;
         let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [7, 3, 2, 6], [0, 2, 3, 1], [7, 6, 4, 5]];
         let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
-        Mesh { file: String::new(), normals: vec![Vec3::Y; 8], positions, triangles }
+        Mesh { file: String::new(), normals: vec![Vec3::Y; 8], positions, triangles, sheet: None }
     }
 
     #[test]

@@ -3,9 +3,10 @@
 //! A scene is a TOML file (see `scenes/` for commented ones) or one of the [shipped](Scene::shipped) scenes. Units are
 //! metres, W/m² for directional lights and W/sr for point lights; the file's `unit` scales every length in it.
 //!
-//! A closed dielectric shape holds its medium inside. A dielectric quad, disk or sine is an open interface: its medium
-//! lies on the side its normal points away from (water under the air). Other open shapes bound no medium. A material *is* the identity of its medium: where two
-//! shapes of one material touch there is no interface, and nested dielectrics can be told apart.
+//! A closed dielectric shape holds its medium inside. A dielectric quad, disk, sine, heights or wave is an open interface:
+//! its medium lies on the side its normal points away from (water under the air). Other open shapes bound no medium. A
+//! material *is* the identity of its medium: where two shapes of one material touch there is no interface, and nested
+//! dielectrics can be told apart.
 use std::{collections::BTreeMap, sync::Arc};
 
 use glam::{DAffine3, DVec3, Vec3};
@@ -33,9 +34,12 @@ mod object;
 mod overrides;
 mod patch;
 mod shape_files;
+mod sheet;
+mod sheet_files;
 mod shipped;
 mod sine;
 mod track;
+mod wave;
 
 use crate::names::NoSuch;
 
@@ -44,6 +48,8 @@ pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
 pub use light::{Beam, Light, LightKind};
 pub use models::Models;
+pub use sheet::Sheet;
+pub use wave::Wave;
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.
 #[derive(Clone, Debug)]
@@ -195,6 +201,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Indices of the vertices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Of a height over a rectangle; the mesh is then an open interface, whose normal has z > 0.
+    pub sheet: Option<Sheet>,
 }
 
 /// What a surface does to light, and which medium it bounds.

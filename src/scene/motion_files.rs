@@ -130,12 +130,17 @@ fn anchor(shape: &Shape, file: &ObjectFile, unit: f64) -> DVec3 {
 
 fn deformers(key: &Key, shape: &Shape, file: &ObjectMotionFile, unit: f64) -> Result<Deformers, SceneError> {
     let given = [("twist", file.twist.is_some()), ("bend", file.bend.is_some()), ("wave", file.wave.is_some())];
-    if let Some((name, _)) = given.into_iter().find(|(_, given)| *given && !matches!(shape, Shape::Mesh { .. })) {
-        let remedy = match shape {
-            Shape::Canonical { kind: Canonical::Sine { .. }, .. } => "a sine has its own `speed`",
-            _ => "use a mesh of the shape",
+    // A bent sheet is no height over a rectangle: what is below it could not be told.
+    let bends = matches!(shape, Shape::Mesh { mesh, .. } if mesh.sheet.is_none());
+    if let Some((name, _)) = given.into_iter().find(|(_, given)| *given && !bends) {
+        let (found, remedy) = match shape {
+            Shape::Mesh { .. } => ("a height over a rectangle", "save the surface as a mesh, and use that"),
+            Shape::Canonical { kind: Canonical::Sine { .. }, .. } => {
+                ("a shape that its equation makes", "a sine has its own `speed`")
+            }
+            _ => ("a shape that its equation makes", "use a mesh of the shape"),
         };
-        return Err(key.key(name).fault("a mesh to deform", "a shape that its equation makes", remedy));
+        return Err(key.key(name).fault("a mesh to deform", found, remedy));
     }
     // Per length: of a unit that is longer, a metre gets less.
     let rate = |key: &Key, value: f64| {

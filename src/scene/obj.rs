@@ -80,7 +80,8 @@ impl Statements {
 
     fn into_mesh(self, file: &str) -> Result<Mesh, ObjFault> {
         let own_normals = self.faces.iter().flat_map(|(_, face)| face).all(|corner| corner.1.is_some());
-        let mut mesh = Mesh { file: file.to_owned(), positions: vec![], normals: vec![], triangles: vec![] };
+        let mut mesh =
+            Mesh { file: file.to_owned(), positions: vec![], normals: vec![], triangles: vec![], sheet: None };
         let mut vertices = HashMap::new();
         for (line, face) in &self.faces {
             let mut vertex = |&(position, normal): &Corner| {

@@ -6,10 +6,10 @@ use glam::{DAffine3, DVec3};
 use super::{
     Material, Mesh, Models, Object, Shape,
     error::SceneError,
-    file::{Floats, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile},
+    file::{Floats, HeightsFile, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile, WaveFile},
     load::Files,
     locate::Key,
-    models, obj, shape_files,
+    models, obj, shape_files, sheet_files,
 };
 
 /// Cosine between a quad's edges that passes for a right angle: the rounding of decimal numbers in a file.
@@ -32,6 +32,10 @@ pub fn object(
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
 }
 
+/// Of shapes.
+const KINDS: [&str; 10] =
+    ["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "sine", "heights", "wave", "mesh"];
+
 /// Of the one kind that is given.
 fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
     let kinds = [
@@ -42,12 +46,14 @@ fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result
         file.cylinder.as_ref().map(|written| shape_files::cylinder(&key.key("cylinder"), written, unit)),
         file.paraboloid.as_ref().map(|written| shape_files::paraboloid(&key.key("paraboloid"), written, unit)),
         file.sine.as_ref().map(|written| sine(&key.key("sine"), written, unit)),
+        file.heights.as_ref().map(|written| heights(&key.key("heights"), written, unit, meshes)),
+        file.wave.as_ref().map(|written| wave(&key.key("wave"), written, unit)),
         file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, meshes)),
     ];
     let mut given = kinds.into_iter().flatten();
     match (given.next(), given.next()) {
         (Some(shape), None) => shape,
-        _ => Err(key.one_kind(&["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "sine", "mesh"])),
+        _ => Err(key.one_kind(&KINDS)),
     }
 }
 
@@ -64,6 +70,17 @@ fn quad(key: &Key, file: &QuadFile, unit: f64) -> Result<Shape, SceneError> {
 fn sine(key: &Key, file: &SineFile, unit: f64) -> Result<Shape, SceneError> {
     let sheet = rectangle(key, [file.center, file.u, file.v], unit)?;
     shape_files::sine(key, file, sheet, unit)
+}
+
+fn heights(key: &Key, file: &HeightsFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
+    let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
+    let bytes = meshes.bytes(&key.key("file"), &file.file, "a readable picture")?;
+    sheet_files::heights(key, file, &bytes, sides, unit)
+}
+
+fn wave(key: &Key, file: &WaveFile, unit: f64) -> Result<Shape, SceneError> {
+    let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
+    sheet_files::wave(key, file, sides, unit)
 }
 
 /// Centre and half edges at right angles.
@@ -118,8 +135,14 @@ impl<'a> Meshes<'a> {
         if let Some(mesh) = self.read.get(file) {
             return Ok(mesh.clone());
         }
-        let bytes = self.bytes(key, file)?;
-        self.hasher.update(&bytes);
+        let bytes = if let Some(name) = file.strip_prefix(models::PREFIX) {
+            let bytes = Models::open().read(name);
+            let bytes = bytes.map_err(|fault| key.fault(fault.expected, fault.found, fault.remedy))?;
+            self.hasher.update(&bytes);
+            bytes
+        } else {
+            self.bytes(key, file, "a readable OBJ file")?
+        };
         let mesh = Arc::new(obj::parse(file, &bytes).map_err(|fault| {
             let line = if fault.line == 0 { String::new() } else { format!(":{}", fault.line) };
             key.fault(fault.expected, format!("{} at {file}{line}", fault.found), fault.remedy)
@@ -128,12 +151,12 @@ impl<'a> Meshes<'a> {
         Ok(mesh)
     }
 
-    fn bytes(&self, key: &Key, file: &str) -> Result<Vec<u8>, SceneError> {
-        if let Some(name) = file.strip_prefix(models::PREFIX) {
-            return Models::open().read(name).map_err(|fault| key.fault(fault.expected, fault.found, fault.remedy));
-        }
-        let remedy = "mesh paths are relative to the scene file; model:NAME names one of the models folder";
-        let unreadable = |why: String| key.fault("a readable OBJ file", format!("{file}: {why}"), remedy);
-        self.files.read(file).map_err(unreadable)
+    /// Of a file beside the scene, which are of the scene from now on.
+    fn bytes(&mut self, key: &Key, file: &str, expected: &str) -> Result<Vec<u8>, SceneError> {
+        let remedy = "paths are relative to the scene file; a mesh may be model:NAME, one of the models folder";
+        let unreadable = |why: String| key.fault(expected, format!("{file}: {why}"), remedy);
+        let bytes = self.files.read(file).map_err(unreadable)?;
+        self.hasher.update(&bytes);
+        Ok(bytes)
     }
 }

@@ -6,6 +6,7 @@ use tempfile::TempDir;
 
 mod malformed;
 mod shapes;
+mod sheets;
 mod sound;
 
 /// A scene with every kind of thing but a mesh; the tests below change it line by line.

@@ -75,6 +75,16 @@ impl Layers {
         Ok((layers, ours(texts)))
     }
 
+    /// Pixels across and down of an EXR file's first part, by its header alone.
+    ///
+    /// # Errors
+    /// [`ImageError::Format`] if the bytes do not begin as an EXR file.
+    pub fn size_of_exr(bytes: &[u8]) -> Result<[u64; 2], ImageError> {
+        let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(format_error)?;
+        let size = meta.headers.first().map(|header| header.layer_size);
+        Ok(size.map_or([0, 0], |size| [size.width() as u64, size.height() as u64]))
+    }
+
     /// Reads the provenance of an EXR file, and none of its pixels.
     ///
     /// # Errors

@@ -118,7 +118,8 @@ fn nothing_and_an_empty_mesh_have_no_instance() {
     let mut scene = load("bunny");
     scene.objects.retain(|o| matches!(o.shape, Shape::Mesh { .. }));
     let Shape::Mesh { mesh, .. } = &mut scene.objects[0].shape else { panic!("not a mesh") };
-    *mesh = Arc::new(Mesh { file: "none.obj".into(), positions: vec![], normals: vec![], triangles: vec![] });
+    *mesh =
+        Arc::new(Mesh { file: "none.obj".into(), positions: vec![], normals: vec![], triangles: vec![], sheet: None });
     for objects in [scene.objects.clone(), vec![]] {
         scene.objects = objects;
         let all = arrays(&scene);
@@ -168,7 +169,13 @@ fn what_float32_cannot_square_is_named() {
     assert!(flat.starts_with("`odd`: its shape is flat"), "{flat}");
     let nan = with(Shape::Sphere { center: DVec3::NAN, radius: 1.0 });
     assert!(nan.contains("`odd`"), "{nan}");
-    let mesh = Mesh { file: "m.obj".into(), positions: vec![Vec3::ZERO], normals: vec![], triangles: vec![[0, 0, 9]] };
+    let mesh = Mesh {
+        file: "m.obj".into(),
+        positions: vec![Vec3::ZERO],
+        normals: vec![],
+        triangles: vec![[0, 0, 9]],
+        sheet: None,
+    };
     let missing = with(Shape::Mesh { mesh: Arc::new(mesh), to_world: DAffine3::IDENTITY });
     assert_eq!(missing, "`odd`: triangle 0 of `m.obj` names a vertex that the mesh does not have");
 }

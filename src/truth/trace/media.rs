@@ -93,7 +93,11 @@ impl Space<'_> {
 }
 
 fn is_open(shape: &Shape) -> bool {
-    matches!(shape, Shape::Quad { .. } | Shape::Canonical { kind: Canonical::Disk | Canonical::Sine { .. }, .. })
+    match shape {
+        Shape::Quad { .. } | Shape::Canonical { kind: Canonical::Disk | Canonical::Sine { .. }, .. } => true,
+        Shape::Mesh { mesh, .. } => mesh.sheet.is_some(),
+        _ => false,
+    }
 }
 
 /// How deep a point lies below an open interface, within its outline as seen along the normal.
@@ -107,6 +111,10 @@ fn depth_below(shape: &Shape, p: DVec3) -> Option<f64> {
             let at = to_world.inverse().transform_point3(p);
             let depth = ((wave * at.x).sin() - at.z) * to_world.matrix3.z_axis.length();
             return (depth > 0.0 && at.truncate().abs().max_element() <= 1.0).then_some(depth);
+        }
+        Shape::Mesh { mesh, to_world } => {
+            let depth = mesh.depth_below(to_world.inverse().transform_point3(p))?;
+            return Some(depth * to_world.matrix3.z_axis.length());
         }
         _ => return None,
     };
