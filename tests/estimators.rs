@@ -153,6 +153,16 @@ fn on_a_sine_of_water() {
 }
 
 #[test]
+fn on_the_knot() {
+    hold("knot", None, "region", 40_000, 128);
+}
+
+#[test]
+fn on_a_pool() {
+    hold("water", None, "region", 190_000, 128);
+}
+
+#[test]
 fn in_a_focus() {
     hold("paraboloid", None, "region", 20_000, 32);
 }

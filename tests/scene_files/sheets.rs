@@ -16,6 +16,9 @@ const WAVE: &str = "[objects.ball.wave]\ncenter = [0, 1, 0]\nu = [1, 0, 0]\nv = 
                     middle = [0.5, 1]\noctaves = 3\nwave_size = 10\nfactor = 1\nspeed = 2\nvertex_size = 0.01\n\
                     time = 0.5\ngrid = 32\n";
 
+const BENT: &str =
+    "[objects.ball.motion.bend]\nalong = [1, 0, 0]\ntowards = [0, 1, 0]\nangle = [{ time = 0, value = 5 }]";
+
 fn with(sheet: &str) -> String {
     BASE.replace("[objects.ball.sphere]\ncenter = [0, 0, 0]\nradius = 1\n", sheet)
 }
@@ -113,6 +116,7 @@ const KEYS: &[Case] = &[
     ("u = [2, 0, 0]", "u = [0, 0, 0]", "heights.u", "0", "correct it"),
     ("file = \"h.png\"", "file = \"none.png\"", "heights.file", "none.png: No such file", "relative to the scene file"),
     ("file = \"h.png\"", "", "heights.file", "none", "add it"),
+    ("base = -0.1", BENT, "motion.bend", "a height over a rectangle", "save the surface as a mesh"),
     ("octaves = 3", "octaves = 0", "wave.octaves", "0", "half as long"),
     ("octaves = 3", "octaves = 40", "wave.octaves", "40", "half as long"),
     ("wave_size = 10", "wave_size = 0", "wave.wave_size", "0", "the paper's are the defaults"),

@@ -63,12 +63,16 @@ fn shipped_scenes_load_by_name_and_have_titles() {
             "bunny",
             "diffuse",
             "flat-water",
+            "gem",
             "glass-sphere",
+            "knot",
             "moving-sphere",
             "null",
             "paraboloid",
             "ring",
-            "sine-water"
+            "room",
+            "sine-water",
+            "water"
         ]
     );
     for (name, title) in Scene::shipped() {
