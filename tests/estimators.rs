@@ -124,7 +124,7 @@ fn on_index_one() {
 
 #[test]
 fn on_the_moving_sphere() {
-    hold("moving-sphere", None, "region", 76_000, 64);
+    hold("moving-sphere", None, "region", 17_000, 64);
 }
 
 #[test]

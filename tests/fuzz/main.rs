@@ -81,9 +81,13 @@ fn folder() -> PathBuf {
     folder
 }
 
-/// What sound scenes name is there.
-fn lay_meshes() {
-    std::fs::write(folder().join("bunny-lo.obj"), readers::BUNNY).expect("a mesh is written");
+/// What sound scenes name is there: the files that ship beside them.
+fn lay_what_scenes_name() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let files = std::fs::read_dir(scenes).expect("the scenes").map(|entry| entry.expect("a file").path());
+    for file in files.filter(|file| file.extension().is_some_and(|ending| ending == "obj" || ending == "png")) {
+        std::fs::copy(&file, folder().join(file.file_name().expect("a name"))).expect("a file is laid");
+    }
 }
 
 /// What one reader was given.
@@ -138,7 +142,7 @@ fn no_reader_panics_hangs_or_hoards() {
     let (seconds, seed) = (asked("NEPHROID_FUZZ_SECONDS", 60), asked("NEPHROID_FUZZ_SEED", 1));
     // On stderr and at once: an input that ends the process is the last one written.
     eprintln!("seed {seed}, {seconds} s; the input that is being read lies in {}", folder().display());
-    lay_meshes();
+    lay_what_scenes_name();
     let until = Instant::now() + Duration::from_secs(seconds);
     let seeds: Vec<_> = READERS.iter().map(|reader| (reader.seeds)()).collect();
     READERS.iter().zip(&seeds).for_each(|(reader, seeds)| read_the_sound_ones(reader, seeds));
