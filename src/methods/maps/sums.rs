@@ -52,7 +52,7 @@ pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
 fn unit(scene: &Scene, emissions: &[Emission], side: u32) -> f64 {
     let fluxes = emissions.iter().map(|e| most(scene, e, side)).filter(|flux| *flux > 0.0);
     let [least, most] = fluxes.fold([f64::INFINITY, 0.0], |[least, most], flux| [least.min(flux), most.max(flux)]);
-    let exponent = |flux: f64, bits: i32| flux.log2().ceil() as i32 - bits;
+    let exponent = |flux: f64, bits: i32| (flux.log2().ceil() as i32).saturating_sub(bits);
     let exponent = exponent(least, FINE).max(exponent(most, COARSE)); // of nothing: the least and the most integer
     f64::from(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())).exp2()
 }
