@@ -23,14 +23,7 @@ bool eye_surface(ivec2 texel, out Surface s, out vec3 d) {
     if (seen.x == 0u) return false;
     vec3 o;
     view_ray(frame.data.eye, (vec2(texel) + 0.5) / vec2(push.size * push.samples), o, d);
-    Hit hit = Hit(0.0, seen.x - 1u, seen.y, uintBitsToFloat(seen.zw));
-#ifdef HAS_SPHERES
-    Instance at = scene_instances.data[hit.instance];
-    if (at.kind == SHAPE_SPHERE) {
-        hit.t = hit_sphere(local_ray(map_point(at.to_object, o), map_vector(at.to_object, d)), NO_HIT);
-    }
-#endif
-    s = surface_at(o, d, hit);
+    s = surface_seen(seen, o, d);
     return true;
 }
 

@@ -15,6 +15,14 @@
 #define FOLLOWED 0
 #endif
 
+// Where bands are traced apart, leaves the view's own.
+void keep_traced_bands(inout LightSample light) {
+#ifdef DISPERSIVE
+    traced_band = BAND;
+    light.flux = of_traced_bands(light.flux);
+#endif
+}
+
 // Takes from the photon what the medium absorbs on a way.
 void travel(inout Photon p, uint medium, float metres) {
     if (medium == MEDIUM_AIR) return;

@@ -63,15 +63,11 @@ bool cross_body(inout Photon p, Surface s, vec3 before, inout vec3 d, inout uint
 #endif
 
 Photon trace_photon(LightSample light) {
-    vec3 zero = vec3(0.0);
-#ifdef DISPERSIVE
-    traced_band = BAND;
-    light.flux = of_traced_bands(light.flux);
-#endif
-    Photon p = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
+    keep_traced_bands(light);
+    Photon p = no_photon();
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     Face front = front_face(texel);
-    if (!any(greaterThan(light.flux, zero)) || !is_face(front)) return p;
+    if (!any(greaterThan(light.flux, vec3(0.0))) || !is_face(front)) return p;
     p.emitted = light.flux;
     p.flux = light.flux;
 #ifdef BLOCKERS

@@ -84,14 +84,7 @@ bool receiver_at(Landing ray, ivec2 texel, out Surface s) {
     if (seen.x == 0u) return false;
     vec3 o, d;
     view_ray(ray.view, (vec2(texel) + 0.5) / vec2(ray.size), o, d);
-    Hit hit = Hit(0.0, seen.x - 1u, seen.y, uintBitsToFloat(seen.zw));
-#ifdef HAS_SPHERES
-    Instance at = scene_instances.data[hit.instance];
-    if (at.kind == SHAPE_SPHERE) {
-        hit.t = hit_sphere(local_ray(map_point(at.to_object, o), map_vector(at.to_object, d)), NO_HIT);
-    }
-#endif
-    s = surface_at(o, d, hit);
+    s = surface_seen(seen, o, d);
     return true;
 }
 

@@ -61,9 +61,7 @@ void main() {
     if (any(greaterThanEqual(texel, push.size))) return;
 #ifdef LAYERS
     trace_tree(light_sample(texel));
-    vec3 zero = vec3(0.0);
-    Photon none = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
-    for (int layer = layers_filled; layer < LAYERS; layer++) store_photon(ivec3(texel, layer), none);
+    for (int layer = layers_filled; layer < LAYERS; layer++) store_photon(ivec3(texel, layer), no_photon());
 #else
     store_photon(texel, trace_photon(light_sample(texel)));
 #endif

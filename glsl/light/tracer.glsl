@@ -16,13 +16,9 @@ bool is_emitted(LightSample light, bool found, Hit first) {
 }
 
 Photon trace_photon(LightSample light) {
-    vec3 zero = vec3(0.0);
-#ifdef DISPERSIVE
-    traced_band = BAND;
-    light.flux = of_traced_bands(light.flux);
-#endif
-    Photon p = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
-    if (!any(greaterThan(light.flux, zero))) return p; // beyond a spot's edge
+    keep_traced_bands(light);
+    Photon p = no_photon();
+    if (!any(greaterThan(light.flux, vec3(0.0)))) return p; // beyond a spot's edge
     vec3 o = light.origin, d = light.direction;
     Hit hit;
     bool found = trace(o, d, FAR, MASK_ALL, hit);
@@ -39,7 +35,7 @@ Photon trace_photon(LightSample light) {
         Surface s = surface_at(o, d, hit);
         bool diffuse = material_mask(s.material) == MASK_DIFFUSE;
         travel(p, innermost(media), hit.t);
-        if (!any(greaterThan(p.flux, zero))) {
+        if (!any(greaterThan(p.flux, vec3(0.0)))) {
             p.status = PHOTON_ABSORBED;
             return p;
         }

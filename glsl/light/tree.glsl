@@ -140,16 +140,12 @@ bool follow(inout Photon p, inout Branch b, bool found, Hit hit, float faint, in
 }
 
 void trace_tree(LightSample light) {
-    vec3 zero = vec3(0.0);
-#ifdef DISPERSIVE
-    traced_band = BAND;
-    light.flux = of_traced_bands(light.flux);
-#endif
-    Photon p = Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
-    if (!any(greaterThan(light.flux, zero))) return; // beyond a spot's edge
+    keep_traced_bands(light);
+    Photon p = no_photon();
+    if (!any(greaterThan(light.flux, vec3(0.0)))) return; // beyond a spot's edge
     p.emitted = light.flux;
     float faint = FAINT * sum_of_bands(light.flux);
-    Branch b = Branch(light.origin, light.direction, light.flux, zero, light.media, 0, 0);
+    Branch b = Branch(light.origin, light.direction, light.flux, vec3(0.0), light.media, 0, 0);
     int height = 0;
     for (;;) {
         Hit hit;

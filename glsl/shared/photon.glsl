@@ -41,6 +41,12 @@ struct Photon {
     uint bent;      // times the geometric normal bent the ray in place of the interpolated one
 };
 
+// Nothing: what a sample leaves that meets no specular object.
+Photon no_photon() {
+    vec3 zero = vec3(0.0);
+    return Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
+}
+
 // Column `hit`: world position and 1 + receiver; 0 where no photon arrived.
 vec4 photon_hit_column(Photon p) {
     return p.status == PHOTON_VALID ? vec4(p.hit, float(p.receiver + 1u)) : vec4(0.0);

@@ -157,6 +157,18 @@ Surface surface_at(vec3 o, vec3 d, Hit hit) {
     return s;
 }
 
+// What a texel of `eye/gbuffer.frag` holds of the ray through it: 1 + instance, primitive, and (u, v).
+Surface surface_seen(uvec4 seen, vec3 o, vec3 d) {
+    Hit hit = Hit(0.0, seen.x - 1u, seen.y, uintBitsToFloat(seen.zw));
+#ifdef HAS_SPHERES
+    Instance at = scene_instances.data[hit.instance];
+    if (at.kind == SHAPE_SPHERE) {
+        hit.t = hit_sphere(local_ray(map_point(at.to_object, o), map_vector(at.to_object, d)), NO_HIT);
+    }
+#endif
+    return surface_at(o, d, hit);
+}
+
 // Where a ray that goes on along d starts: off the surface, on the side it goes to.
 vec3 leave(Surface s, vec3 d) {
     return s.p + (dot(d, s.ng) < 0.0 ? -s.eps : s.eps) * s.ng;
