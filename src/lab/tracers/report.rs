@@ -72,7 +72,8 @@ impl TracersReport {
 impl Row {
     fn of(compared: &Compared) -> Self {
         let figures = compared.result.as_ref().ok().cloned();
-        let ms = figures.is_some().then(|| compared.stages.iter().map(|(_, ms)| ms).sum());
+        // From +0: an empty sum of floats is −0.
+        let ms = figures.is_some().then(|| 0.0 + compared.stages.iter().map(|(_, ms)| ms).sum::<f64>());
         Self {
             tracer: compared.tracer,
             refused: compared.result.as_ref().err().cloned(),
