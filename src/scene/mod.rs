@@ -29,10 +29,12 @@ mod mesh;
 mod models;
 mod motion;
 mod motion_files;
+mod numbers;
 mod obj;
 mod object;
 mod overrides;
 mod patch;
+mod schema;
 mod shape_files;
 mod sheet;
 mod sheet_files;
@@ -312,6 +314,11 @@ impl Scene {
     /// Name and title of every scene inside the program, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
+    }
+
+    /// The scene format as a JSON schema (draft 2020-12), for editors.
+    pub fn schema() -> serde_json::Value {
+        schema::schema()
     }
 
     /// The camera of that name.

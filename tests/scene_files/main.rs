@@ -5,6 +5,7 @@ use nephroid::scene::{Scene, SceneError};
 use tempfile::TempDir;
 
 mod malformed;
+mod schema;
 mod shapes;
 mod sheets;
 mod sound;
