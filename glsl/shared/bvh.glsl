@@ -67,7 +67,7 @@ float hit_shape(Instance shape, LocalRay ray, float t_max, out uint primitive, o
     if (shape.kind == SHAPE_PARABOLOID) t = hit_paraboloid(ray, uintBitsToFloat(shape.detail), t_max, uv);
 #endif
 #ifdef HAS_SINES
-    if (shape.kind == SHAPE_SINE) t = hit_sine(ray, uintBitsToFloat(shape.detail), t_max, uv);
+    if (shape.kind == SHAPE_SINE) t = hit_sine(ray, vec2(uintBitsToFloat(shape.detail), shape.phase), t_max, uv);
 #endif
     return t;
 }

@@ -35,6 +35,7 @@ struct Instance {
     uint material;
     uint object; // index of the object in the scene
     uint detail; // mesh: its root in scene_nodes; cylinder, paraboloid: the bits of its cut; sine: of its wave
+    float phase; // sine: radians
 };
 
 const uint SHAPE_SPHERE = 0u; // unit sphere at the origin
@@ -44,7 +45,7 @@ const uint SHAPE_BOX = 3u;        // [-1, 1]^3
 const uint SHAPE_DISK = 4u;       // unit disk in the xy-plane, normal +z
 const uint SHAPE_CYLINDER = 5u;   // x^2 + y^2 = 1, 0 <= z <= 1, x >= cut
 const uint SHAPE_PARABOLOID = 6u; // z = x^2 + y^2 <= 1, x >= cut
-const uint SHAPE_SINE = 7u;       // z = sin(wave x) over [-1, 1]^2
+const uint SHAPE_SINE = 7u;       // z = sin(wave x + phase) over [-1, 1]^2
 
 struct Material {
     uint kind;

@@ -144,8 +144,9 @@ Surface surface_at(vec3 o, vec3 d, Hit hit) {
 #ifdef HAS_SINES
     if (shape.kind == SHAPE_SINE) {
         float wave = uintBitsToFloat(shape.detail);
-        vec3 local = vec3(hit.uv, sin(wave * hit.uv.x));
-        vec3 normal = vec3(-wave * cos(wave * hit.uv.x), 0.0, 1.0);
+        float angle = wave * hit.uv.x + shape.phase;
+        vec3 local = vec3(hit.uv, sin(angle));
+        vec3 normal = vec3(-wave * cos(angle), 0.0, 1.0);
         s = surface_of_canonical(shape, local, normal, hit.uv, 1.0 + wave);
     }
 #endif

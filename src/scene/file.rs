@@ -237,6 +237,9 @@ pub struct SineFile {
     pub amplitude: f64,
     /// Along u.
     pub wavelength: f64,
+    /// Lengths a second, along u.
+    #[serde(default)]
+    pub speed: f64,
 }
 
 #[derive(Deserialize, JsonSchema)]
@@ -283,7 +286,7 @@ pub struct WaveFile {
     pub speed: Option<f64>,
     /// VTXSIZE of the paper.
     pub vertex_size: Option<f64>,
-    /// s
+    /// s, where the scene's time is 0.
     #[serde(default)]
     pub time: f64,
     /// Cells along the longer side.

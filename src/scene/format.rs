@@ -67,7 +67,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _, "disk"] => &["center", "normal", "radius"],
         ["objects", _, "cylinder"] => &["base", "axis", "radius", "height", "arc", "middle"],
         ["objects", _, "paraboloid"] => &["vertex", "axis", "focal_length", "rim", "from", "middle"],
-        ["objects", _, "sine"] => &["center", "u", "v", "amplitude", "wavelength"],
+        ["objects", _, "sine"] => &["center", "u", "v", "amplitude", "wavelength", "speed"],
         ["objects", _, "heights"] => &["file", "center", "u", "v", "height", "base", "grid"],
         ["objects", _, "wave"] => &[
             "center",

@@ -18,6 +18,7 @@ mod deform;
 mod edges;
 mod error;
 mod file;
+mod flow;
 mod format;
 mod index;
 mod light;

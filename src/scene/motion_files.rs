@@ -8,6 +8,7 @@ use super::{
     deform::{Bend, Deformers, Twist, Wave},
     error::SceneError,
     file::{Colour, Floats, LightFile, ObjectFile},
+    flow::flow,
     locate::Key,
     motion::{LightMotion, ObjectMotion},
     shape_files,
@@ -36,7 +37,7 @@ pub struct KeyFile<T> {
 
 type Keys<T> = Option<Vec<KeyFile<T>>>;
 
-#[derive(Deserialize, JsonSchema)]
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectMotionFile {
     /// Where its `center`, `base` or `vertex` is.
@@ -114,11 +115,12 @@ pub fn object(
     is_receiver: bool,
     unit: f64,
 ) -> Result<Option<ObjectMotion>, SceneError> {
-    let Some(motion) = &file.motion else { return Ok(None) };
-    let key = &key.key("motion");
+    let flow = flow(key, file, unit)?;
+    let none = ObjectMotionFile::default();
+    let (key, motion) = (&key.key("motion"), file.motion.as_ref().unwrap_or(&none));
     let deformers = deformers(key, &object.shape, motion, unit)?;
     let still = motion.position.is_none() && motion.rotate.is_none() && motion.scale.is_none();
-    if still && deformers.is_empty() {
+    if still && deformers.is_empty() && flow.is_none() {
         return Ok(None);
     }
     if is_receiver {
@@ -131,6 +133,7 @@ pub fn object(
     Ok(Some(ObjectMotion {
         place: anchor(&object.shape, file, unit),
         rest: object.shape.clone(),
+        flow,
         position: track(key, "position", &motion.position, |key, value| key.point(value, unit))?,
         rotate: track(key, "rotate", &motion.rotate, shape_files::turn)?,
         scale: track(key, "scale", &motion.scale, factor)?,
@@ -159,7 +162,7 @@ fn deformers(key: &Key, shape: &Shape, file: &ObjectMotionFile, unit: f64) -> Re
         let (found, remedy) = match shape {
             Shape::Mesh { .. } => ("a height over a rectangle", "save the surface as a mesh, and use that"),
             Shape::Canonical { kind: Canonical::Sine { .. }, .. } => {
-                ("a shape that its equation makes", "a sine has its own `speed`")
+                ("a shape that its equation makes", "a sine runs by its own `speed`")
             }
             _ => ("a shape that its equation makes", "use a mesh of the shape"),
         };

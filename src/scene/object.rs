@@ -9,7 +9,8 @@ use super::{
     file::{Floats, HeightsFile, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile, WaveFile},
     load::Files,
     locate::Key,
-    models, obj, shape_files, sheet_files,
+    models, obj, shape_files,
+    sheet_files::{self, WaveSheet},
 };
 
 /// Cosine between a quad's edges that passes for a right angle: the rounding of decimal numbers in a file.
@@ -47,7 +48,7 @@ fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result
         file.paraboloid.as_ref().map(|written| shape_files::paraboloid(&key.key("paraboloid"), written, unit)),
         file.sine.as_ref().map(|written| sine(&key.key("sine"), written, unit)),
         file.heights.as_ref().map(|written| heights(&key.key("heights"), written, unit, meshes)),
-        file.wave.as_ref().map(|written| wave(&key.key("wave"), written, unit)),
+        file.wave.as_ref().map(|written| Ok(wave(&key.key("wave"), written, unit)?.at(0.0))),
         file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, meshes)),
     ];
     let mut given = kinds.into_iter().flatten();
@@ -78,7 +79,7 @@ fn heights(key: &Key, file: &HeightsFile, unit: f64, meshes: &mut Meshes) -> Res
     sheet_files::heights(key, file, &bytes, sides, unit)
 }
 
-fn wave(key: &Key, file: &WaveFile, unit: f64) -> Result<Shape, SceneError> {
+pub fn wave(key: &Key, file: &WaveFile, unit: f64) -> Result<WaveSheet, SceneError> {
     let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
     sheet_files::wave(key, file, sides, unit)
 }

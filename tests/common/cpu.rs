@@ -110,7 +110,7 @@ pub fn canonical_of(instance: &Instance) -> Canonical {
         SHAPE_DISK => Canonical::Disk,
         SHAPE_CYLINDER => Canonical::Cylinder { cut },
         SHAPE_PARABOLOID => Canonical::Paraboloid { cut },
-        SHAPE_SINE => Canonical::Sine { wave: cut },
+        SHAPE_SINE => Canonical::Sine { wave: cut, phase: f64::from(instance.phase) },
         kind => panic!("kind {kind} is no canonical shape"),
     }
 }

@@ -5,6 +5,7 @@ use nephroid::scene::{Scene, SceneError};
 use tempfile::TempDir;
 
 mod malformed;
+mod motion;
 mod schema;
 mod shapes;
 mod sheets;

@@ -46,6 +46,8 @@ pub struct Instance {
     pub object: u32,
     /// Of a mesh, its root in the nodes; of a cylinder or paraboloid its cut, of a sine its wave, as the bits of a float32.
     pub detail: u32,
+    /// Of a sine, radians.
+    pub phase: f32,
 }
 
 /// Of one object or more; a medium's identity is its index.
@@ -108,7 +110,7 @@ pub const SHAPE_DISK: u32 = 4;
 pub const SHAPE_CYLINDER: u32 = 5;
 /// z = x² + y², up to 1, x from the cut on.
 pub const SHAPE_PARABOLOID: u32 = 6;
-/// z = sin(wave x) over [-1, 1]².
+/// z = sin(wave x + phase) over [-1, 1]².
 pub const SHAPE_SINE: u32 = 7;
 
 /// A receiver.

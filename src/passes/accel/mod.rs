@@ -130,7 +130,7 @@ fn place(
     add: &mut impl FnMut(usize, &str, &Arc<Mesh>) -> Result<usize, AccelError>,
 ) -> Result<Option<Placed>, AccelError> {
     let name = &object.name;
-    let (mut mesh, mut detail) = (None, 0);
+    let (mut mesh, mut detail, mut phase) = (None, 0, 0.0);
     let (kind, to_world, (lo, hi)) = match &object.shape {
         Shape::Sphere { center, radius } => {
             let reach = DVec3::splat(*radius);
@@ -147,6 +147,9 @@ fn place(
         }
         Shape::Mesh { mesh, .. } if mesh.triangles.is_empty() => return Ok(None),
         Shape::Canonical { kind, to_world } => {
+            if let Canonical::Sine { phase: of, .. } = kind {
+                phase = *of as f32;
+            }
             let (kind, more) = canonical(kind);
             detail = more.to_bits();
             let [lo, hi] = object.shape.bounds().unwrap_or_default();
@@ -168,6 +171,7 @@ fn place(
         material: object.material as u32,
         object: index as u32,
         detail,
+        phase,
     };
     Ok(Some(Placed { instance, mesh, bounds: roomy_box(lo, hi) }))
 }
@@ -179,7 +183,7 @@ fn canonical(kind: &Canonical) -> (u32, f32) {
         Canonical::Disk => (SHAPE_DISK, 0.0),
         Canonical::Cylinder { cut } => (SHAPE_CYLINDER, cut as f32),
         Canonical::Paraboloid { cut } => (SHAPE_PARABOLOID, cut as f32),
-        Canonical::Sine { wave } => (SHAPE_SINE, wave as f32),
+        Canonical::Sine { wave, .. } => (SHAPE_SINE, wave as f32),
     }
 }
 
