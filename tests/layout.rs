@@ -18,10 +18,10 @@ macro_rules! host {
 #[test]
 fn offsets_agree() {
     let host = [
-        host!("Node", accel::Node { lo, count, hi, first }),
+        host!("Node", accel::Node { corners, reference }),
         host!("Triangle", accel::Triangle { a, b, c }),
         host!("TriangleNormals", accel::TriangleNormals { a, b, c }),
-        host!("Instance", accel::Instance { to_object, to_world, kind, material, object, detail }),
+        host!("Instance", accel::Instance { to_object, to_world, kind, material, object, detail, phase }),
         host!("Material", accel::Material { kind, ior, colour, absorption }),
         host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer }),
         host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),

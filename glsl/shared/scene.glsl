@@ -10,14 +10,24 @@
 #define HAS_CAST // shapes that the eye casts rays at; quads and meshes are rasterised as they are
 #endif
 
-// A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
-// primitives from `first`. All indices are absolute. The tree over the instances has its root at 0.
+// A node of a binary tree. `corners` is its box along x, y and z in cells of the tree's grid: the least corner in the low
+// half, the greatest in the high half. `reference` has a count in its upper four bits. 0: inner, its children are the
+// nodes from the index in the others on; else a leaf of so many primitives from that index on. All indices are absolute.
 struct Node {
-    vec3 lo;
-    uint count;
-    vec3 hi;
-    uint first;
+    uvec3 corners;
+    uint reference;
 };
+
+// A tree begins with its grid, origin and cell as the bits of floats in the corners of two nodes, and then its root. Cells
+// are powers of two, and the origin a whole number of them: float32 makes the corners exactly (`passes/accel/grid.rs`).
+// The tree over the instances begins at 0.
+struct Grid {
+    vec3 origin;
+    vec3 cell;
+};
+
+const uint GRID_ENTRIES = 2u;
+const uint NODE_INDEX = 0x0fffffffu;
 
 struct Triangle {
     vec3 a, b, c;
@@ -34,7 +44,7 @@ struct Instance {
     uint kind;
     uint material;
     uint object; // index of the object in the scene
-    uint detail; // mesh: its root in scene_nodes; cylinder, paraboloid: the bits of its cut; sine: of its wave
+    uint detail; // mesh: where its tree begins in scene_nodes; cylinder, paraboloid: the bits of its cut; sine: of its wave
     float phase; // sine: radians
 };
 

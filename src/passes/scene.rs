@@ -1,8 +1,8 @@
 //! The scene's six buffers in a plan (`glsl/shared/scene.glsl`).
 
 use super::accel::{
-    Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SINE,
-    SHAPE_SPHERE, SceneArrays, Triangle,
+    GRID_ENTRIES, Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD,
+    SHAPE_SINE, SHAPE_SPHERE, SceneArrays, Triangle,
 };
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
@@ -134,15 +134,15 @@ pub fn draws(scene: &Scene, arrays: &SceneArrays, keep: impl Fn(&Object) -> bool
     arrays.instances.iter().enumerate().filter_map(draw).collect()
 }
 
-/// First vertex and count of the triangles below a node: a mesh's leaves lie together.
-fn triangle_range(arrays: &SceneArrays, root: u32) -> (u32, u32) {
-    let (mut first, mut count, mut pending) = (u32::MAX, 0, vec![root]);
+/// First vertex and count of the triangles of a tree: a mesh's leaves lie together.
+fn triangle_range(arrays: &SceneArrays, tree: u32) -> (u32, u32) {
+    let (mut first, mut count, mut pending) = (u32::MAX, 0, vec![tree + GRID_ENTRIES]);
     while let Some(node) = pending.pop().and_then(|n| arrays.nodes.get(n as usize)) {
-        if node.count == 0 {
-            pending.extend([node.first, node.first + 1]);
+        if node.count() == 0 {
+            pending.extend([node.first(), node.first() + 1]);
         } else {
-            first = first.min(node.first);
-            count += node.count;
+            first = first.min(node.first());
+            count += node.count();
         }
     }
     if count == 0 { (0, 0) } else { (3 * first, 3 * count) }

@@ -6,7 +6,7 @@ use glam::Vec3;
 use obvhs::aabb::Aabb;
 
 use super::{
-    AccelError, LARGEST_INDEX, Node, TOP_LEVELS, TRAVERSAL_STACK, Triangle, TriangleNormals, check_count,
+    AccelError, GRID_ENTRIES, LARGEST_INDEX, Node, TOP_LEVELS, TRAVERSAL_STACK, Triangle, TriangleNormals, check_count,
     tree::{Tree, most_nodes},
     vector,
 };
@@ -104,7 +104,7 @@ pub struct Meshes {
 /// A mesh among others.
 pub struct PlacedMesh {
     mesh: Arc<MeshTree>,
-    /// Counted from the first node of the first mesh.
+    /// Where its tree begins, counted from that of the first mesh.
     pub root: u32,
     /// First of its triangles.
     triangle: u32,
@@ -129,7 +129,7 @@ impl Meshes {
         let triangle = self.triangles.len() as u32;
         self.triangles.extend(&tree.triangles);
         self.normals.extend(&tree.normals);
-        let room = deformed.map_or(tree.tree.nodes.len(), |_| most_nodes(mesh.triangles.len()));
+        let room = deformed.map_or(tree.tree.entries(), |_| GRID_ENTRIES as usize + most_nodes(mesh.triangles.len()));
         self.all.push(PlacedMesh { mesh: tree, root: self.nodes, triangle, room });
         self.nodes += room as u32;
         if deformed.is_none() {
@@ -141,8 +141,8 @@ impl Meshes {
     /// All nodes, moved behind `base` others; a mesh that is deformed has room for a tree of any shape.
     pub fn nodes(&self, base: u32) -> impl Iterator<Item = Node> {
         self.all.iter().flat_map(move |placed| {
-            let moved = placed.mesh.tree.moved(base + placed.root, placed.triangle);
-            moved.chain(std::iter::repeat(Node::default())).take(placed.room)
+            let packed = placed.mesh.tree.packed(base + placed.root, placed.triangle);
+            packed.chain(std::iter::repeat(Node::default())).take(placed.room)
         })
     }
 }

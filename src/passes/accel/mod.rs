@@ -11,6 +11,7 @@ use obvhs::aabb::Aabb;
 use crate::scene::{Canonical, LightKind, Material as SceneMaterial, MaterialKind, Mesh, Object, Scene, Shape};
 
 mod error;
+mod grid;
 mod layout;
 mod meshes;
 #[cfg(test)]
@@ -21,7 +22,7 @@ pub use error::AccelError;
 pub use layout::*;
 use meshes::Meshes;
 pub use meshes::{Trees, WORN};
-use tree::{Tree, roomy_box};
+use tree::{Branch, Tree, roomy_box};
 
 /// Levels of both trees together that the shaders' stack holds (`TRAVERSAL_STACK` in `bvh.glsl`).
 pub const TRAVERSAL_STACK: usize = 64;
@@ -29,15 +30,15 @@ pub const TRAVERSAL_STACK: usize = 64;
 const TOP_LEVELS: usize = 24;
 /// A balanced tree over as many instances needs no more levels than that.
 const MOST_INSTANCES: usize = 1 << (TOP_LEVELS - 1);
-/// Node references keep 28 bits for an index (`node_reference` in `bvh.glsl`).
-const LARGEST_INDEX: usize = (1 << 28) - 1;
+/// As far as the reference of a node goes (`bvh.glsl`).
+const LARGEST_INDEX: usize = (1 << INDEX_BITS) - 1;
 /// Lengths, factors and their inverses up to here can be squared, and boxes' areas summed, within float32.
 const LARGEST: f64 = 1e15;
 
 /// What the shaders read; no array is empty, since no Vulkan buffer may be.
 #[derive(Clone, Debug)]
 pub struct SceneArrays {
-    /// The tree over the instances (root 0), then one tree for each distinct mesh.
+    /// The tree over the instances, then one tree for each distinct mesh.
     pub nodes: Vec<Node>,
     /// Object units, in the order of the leaves.
     pub triangles: Vec<Triangle>,
@@ -81,14 +82,14 @@ impl SceneArrays {
             _ if scene.moves() => Tree::apart(&boxes, TOP_LEVELS),
             _ => Tree::over(&boxes, TOP_LEVELS),
         };
-        let base = top.nodes.len() as u32;
+        let base = top.entries() as u32;
         let instance = |&i: &u32| {
             let p = &placed[i as usize];
             Instance { detail: p.mesh.map_or(p.instance.detail, |m| base + meshes.all[m].root), ..p.instance }
         };
         let arrays = SceneArrays {
             instances: filled(top.order.iter().filter(|&&i| (i as usize) < placed.len()).map(instance).collect()),
-            nodes: top.moved(0, 0).chain(meshes.nodes(base)).collect(),
+            nodes: top.packed(0, 0).chain(meshes.nodes(base)).collect(),
             triangles: filled(meshes.triangles),
             normals: filled(meshes.normals),
             materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
@@ -109,7 +110,7 @@ fn filled<T: Default>(mut array: Vec<T>) -> Vec<T> {
 
 /// A tree that no ray enters: one leaf beyond every t; the instance it names is filler.
 fn nowhere() -> Tree {
-    Tree { nodes: vec![Node { lo: [f32::MAX; 3], count: 1, hi: [f32::MAX; 3], first: 0 }], order: vec![] }
+    Tree { nodes: vec![Branch { lo: [f32::MAX; 3], count: 1, hi: [f32::MAX; 3], first: 0 }], order: vec![] }
 }
 
 fn check_count(what: &'static str, count: usize, limit: usize) -> Result<(), AccelError> {
