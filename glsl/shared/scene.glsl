@@ -1,4 +1,4 @@
-// The scene as the shaders read it: six buffers in scalar layout, filled by `passes/accel`.
+// The scene as the shaders read it: buffers in scalar layout, filled by `passes/accel`.
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
@@ -62,6 +62,7 @@ struct Material {
     vec3 ior;        // of each band; of a conductor, the real part
     vec3 colour;     // albedo, or a mirror's reflectance
     vec3 absorption; // 1/m; of a conductor, the imaginary part of its index
+    uint texture;    // 1 + index in scene_textures; 0: none
 };
 
 const uint MATERIAL_DIFFUSE = 0u;
@@ -89,6 +90,21 @@ layout(set = 0, binding = 2, scalar) readonly buffer SceneNormals { TriangleNorm
 #endif
 layout(set = 0, binding = 3, scalar) readonly buffer SceneInstances { Instance data[]; } scene_instances;
 layout(set = 0, binding = 4, scalar) readonly buffer SceneMaterials { Material data[]; } scene_materials;
+#ifdef HAS_TEXTURES // passes that show colours, of a scene that has any
+struct Texture {
+    uint first;   // in scene_texels, rows from the top
+    uvec2 size;   // pixels
+    vec2 repeat;  // how often it is within 0 to 1
+};
+layout(set = 0, binding = 25, scalar) readonly buffer SceneTextures { Texture data[]; } scene_textures;
+layout(set = 0, binding = 26, scalar) readonly buffer SceneTexels { vec3 data[]; } scene_texels;
+#ifdef HAS_COORDINATES // of meshes
+struct TriangleCoordinates {
+    vec2 a, b, c;
+};
+layout(set = 0, binding = 27, scalar) readonly buffer SceneCoordinates { TriangleCoordinates data[]; } scene_coordinates;
+#endif
+#endif
 layout(set = 0, binding = 5, scalar) readonly buffer SceneLights { Light data[]; } scene_lights;
 
 // Share of a light's power that goes along unit d: of a spot, a smooth step between its two half angles. The height

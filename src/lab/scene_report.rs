@@ -64,6 +64,8 @@ struct MaterialRow {
     /// By name, its unit included; of each band.
     #[serde(flatten)]
     values: BTreeMap<&'static str, [f64; 3]>,
+    /// By whose colours the albedo is multiplied.
+    texture: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -155,19 +157,24 @@ impl ObjectRow {
 impl MaterialRow {
     fn new(material: &Material) -> Self {
         let (kind, values) = match material.kind {
-            MaterialKind::Diffuse { albedo } => ("diffuse", vec![("albedo", albedo)]),
+            MaterialKind::Diffuse { albedo, .. } => ("diffuse", vec![("albedo", albedo)]),
             MaterialKind::Dielectric { ior, absorption } => {
                 ("dielectric", vec![("ior", ior), ("absorption_per_m", absorption)])
             }
             MaterialKind::Mirror { reflectance } => ("mirror", vec![("reflectance", reflectance)]),
             MaterialKind::Conductor { eta, k } => ("conductor", vec![("eta", eta), ("k", k)]),
         };
-        Self { name: material.name.clone(), kind, values: values.into_iter().collect() }
+        let texture = match &material.kind {
+            MaterialKind::Diffuse { texture, .. } => texture.as_ref().map(|texture| texture.picture.file.clone()),
+            _ => None,
+        };
+        Self { name: material.name.clone(), kind, values: values.into_iter().collect(), texture }
     }
 
     fn text(&self) -> String {
         let value = |(name, bands): (&&str, &[f64; 3])| format!("{} {}", name.replace('_', " "), shown(*bands));
-        self.values.iter().map(value).collect::<Vec<_>>().join(", ")
+        let texture = self.texture.iter().map(|file| format!("texture {file}"));
+        self.values.iter().map(value).chain(texture).collect::<Vec<_>>().join(", ")
     }
 }
 

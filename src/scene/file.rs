@@ -324,8 +324,12 @@ pub struct MaterialFile {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiffuseFile {
-    /// Share of the light sent back, 0 to 1.
-    pub albedo: Colour,
+    /// Share of the light sent back, 0 to 1; with a texture, by what its colours are multiplied.
+    pub albedo: Option<Colour>,
+    /// A PNG or an EXR, which the surface shows.
+    pub texture: Option<String>,
+    /// How often the picture is there along each coordinate of the surface.
+    pub repeat: Option<Floats<2>>,
 }
 
 #[derive(Deserialize, JsonSchema)]

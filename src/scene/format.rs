@@ -88,7 +88,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _, "motion", "twist"] => &["axis", "angle"],
         ["objects", _, "motion", "bend"] => &["along", "towards", "angle"],
         ["objects", _, "motion", "wave"] => &["along", "towards", "amplitude", "wavelength", "speed"],
-        ["materials", _, "diffuse"] => &["albedo"],
+        ["materials", _, "diffuse"] => &["albedo", "texture", "repeat"],
         ["materials", _, "dielectric"] => &["ior", "absorption"],
         ["materials", _, "mirror"] => &["reflectance"],
         ["materials", _, "conductor"] => &["eta", "k"],

@@ -9,7 +9,7 @@
 //! dielectrics can be told apart.
 use std::{collections::BTreeMap, sync::Arc};
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 mod build;
 mod canonical;
@@ -35,6 +35,7 @@ mod obj;
 mod object;
 mod overrides;
 mod patch;
+mod picture;
 mod schema;
 mod shape_files;
 mod sheet;
@@ -51,6 +52,7 @@ pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
 pub use light::{Beam, Light, LightKind};
 pub use models::Models;
+pub use picture::{Picture, Texture};
 pub use sheet::Sheet;
 pub use wave::Wave;
 
@@ -204,6 +206,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Indices of the vertices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Texture coordinates, one pair a vertex, (0, 0) at a picture's lower left; none where the file has none.
+    pub coordinates: Vec<Vec2>,
     /// Of a height over a rectangle; the mesh is then an open interface, whose normal has z > 0.
     pub sheet: Option<Sheet>,
 }
@@ -224,6 +228,8 @@ pub enum MaterialKind {
     Diffuse {
         /// Share of the flux sent back, 0 to 1.
         albedo: [f64; 3],
+        /// By whose colours the albedo is multiplied.
+        texture: Option<Texture>,
     },
     /// Smooth and clear.
     Dielectric {

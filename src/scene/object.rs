@@ -9,7 +9,7 @@ use super::{
     file::{Floats, HeightsFile, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile, WaveFile},
     load::Files,
     locate::Key,
-    models, obj, shape_files,
+    models, obj, picture, shape_files,
     sheet_files::{self, WaveSheet},
 };
 
@@ -30,6 +30,7 @@ pub fn object(
     let material = key.key("material").resolve("a material", &file.material, names)?;
     let shape = shape(key, file, unit, meshes)?;
     shape_files::refuse_open_shell(key, &shape, &materials[material])?;
+    picture::refuse_no_coordinates(key, &shape, &materials[material])?;
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
 }
 
@@ -153,7 +154,7 @@ impl<'a> Meshes<'a> {
     }
 
     /// Of a file beside the scene, which are of the scene from now on.
-    fn bytes(&mut self, key: &Key, file: &str, expected: &str) -> Result<Vec<u8>, SceneError> {
+    pub fn bytes(&mut self, key: &Key, file: &str, expected: &str) -> Result<Vec<u8>, SceneError> {
         let remedy = "paths are relative to the scene file; a mesh may be model:NAME, one of the models folder";
         let unreadable = |why: String| key.fault(expected, format!("{file}: {why}"), remedy);
         let bytes = self.files.read(file).map_err(unreadable)?;

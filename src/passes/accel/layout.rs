@@ -75,6 +75,32 @@ pub struct Material {
     pub colour: [f32; 3],
     /// 1/m
     pub absorption: [f32; 3],
+    /// 1 + index of its texture; 0 for none.
+    pub texture: u32,
+}
+
+/// A picture among the texels of all.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Texture {
+    /// First of its texels, rows from the top.
+    pub first: u32,
+    /// Pixels.
+    pub size: [u32; 2],
+    /// How often it is within 0 to 1.
+    pub repeat: [f32; 2],
+}
+
+/// Texture coordinates at the corners of a triangle.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct TriangleCoordinates {
+    /// First corner.
+    pub a: [f32; 2],
+    /// Second corner.
+    pub b: [f32; 2],
+    /// Third corner.
+    pub c: [f32; 2],
 }
 
 /// What shines.

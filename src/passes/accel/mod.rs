@@ -16,12 +16,14 @@ mod layout;
 mod meshes;
 #[cfg(test)]
 mod tests;
+mod textures;
 mod tree;
 
 pub use error::AccelError;
 pub use layout::*;
 use meshes::Meshes;
 pub use meshes::{Trees, WORN};
+pub use textures::Textures;
 use tree::{Branch, Tree, roomy_box};
 
 /// Levels of both trees together that the shaders' stack holds (`TRAVERSAL_STACK` in `bvh.glsl`).
@@ -44,12 +46,16 @@ pub struct SceneArrays {
     pub triangles: Vec<Triangle>,
     /// Beside the triangles.
     pub normals: Vec<TriangleNormals>,
+    /// Texture coordinates beside the triangles; empty where no texture is on a mesh.
+    pub coordinates: Vec<TriangleCoordinates>,
     /// In the order of the leaves; an object without triangles has none.
     pub instances: Vec<Instance>,
     /// As [`Scene::materials`].
     pub materials: Vec<Material>,
     /// As [`Scene::lights`].
     pub lights: Vec<Light>,
+    /// Of the materials.
+    pub textures: Arc<Textures>,
 }
 
 impl SceneArrays {
@@ -62,7 +68,10 @@ impl SceneArrays {
     /// taken as they are. Of a scene that moves, every array is as long at one time as at another, and its instances are
     /// in the order of the objects.
     pub fn build_with(scene: &Scene, trees: &mut Trees) -> Result<SceneArrays, AccelError> {
-        let mut meshes = Meshes::default();
+        let textures = trees.textures(scene)?;
+        let shown =
+            |object: &Object| matches!(object.shape, Shape::Mesh { .. }) && textures.of_material[object.material] > 0;
+        let mut meshes = Meshes::new(scene.objects.iter().any(shown));
         let mut add = |object: usize, name: &str, mesh: &Arc<Mesh>| {
             meshes.add(trees, name, mesh, scene.deforms(object).then_some(object))
         };
@@ -92,8 +101,14 @@ impl SceneArrays {
             nodes: top.packed(0, 0).chain(meshes.nodes(base)).collect(),
             triangles: filled(meshes.triangles),
             normals: filled(meshes.normals),
-            materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
+            coordinates: meshes.coordinates,
+            materials: filled(
+                (scene.materials.iter().zip(&textures.of_material))
+                    .map(|(one, texture)| Ok(Material { texture: *texture, ..material(one)? }))
+                    .collect::<Result<_, AccelError>>()?,
+            ),
             lights: filled(scene.lights.iter().map(|one| light(scene, one)).collect::<Result<_, _>>()?),
+            textures,
         };
         check_count("nodes", arrays.nodes.len(), LARGEST_INDEX)?;
         Ok(arrays)
@@ -198,7 +213,7 @@ fn bounds(mesh: &Mesh, to_world: &DAffine3) -> (DVec3, DVec3) {
 fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
     let name = &material.name;
     let (kind, ior, colour, absorption) = match material.kind {
-        MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, [1.0; 3], albedo, [0.0; 3]),
+        MaterialKind::Diffuse { albedo, .. } => (MATERIAL_DIFFUSE, [1.0; 3], albedo, [0.0; 3]),
         MaterialKind::Dielectric { ior, absorption } => (MATERIAL_DIELECTRIC, ior, [1.0; 3], absorption),
         MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, [1.0; 3], reflectance, [0.0; 3]),
         MaterialKind::Conductor { eta, k } => (MATERIAL_CONDUCTOR, eta, [1.0; 3], k),
@@ -208,6 +223,7 @@ fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
         ior: vector(name, "its index", ior.into())?,
         colour: vector(name, "its colour", colour.into())?,
         absorption: vector(name, "its absorption", absorption.into())?,
+        texture: 0,
     })
 }
 

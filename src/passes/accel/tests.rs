@@ -119,8 +119,14 @@ fn nothing_and_an_empty_mesh_have_no_instance() {
     let mut scene = load("bunny");
     scene.objects.retain(|o| matches!(o.shape, Shape::Mesh { .. }));
     let Shape::Mesh { mesh, .. } = &mut scene.objects[0].shape else { panic!("not a mesh") };
-    *mesh =
-        Arc::new(Mesh { file: "none.obj".into(), positions: vec![], normals: vec![], triangles: vec![], sheet: None });
+    *mesh = Arc::new(Mesh {
+        file: "none.obj".into(),
+        positions: vec![],
+        normals: vec![],
+        triangles: vec![],
+        coordinates: vec![],
+        sheet: None,
+    });
     for objects in [scene.objects.clone(), vec![]] {
         scene.objects = objects;
         let all = arrays(&scene);
@@ -177,6 +183,7 @@ fn what_float32_cannot_square_is_named() {
         positions: vec![Vec3::ZERO],
         normals: vec![],
         triangles: vec![[0, 0, 9]],
+        coordinates: vec![],
         sheet: None,
     };
     let missing = with(Shape::Mesh { mesh: Arc::new(mesh), to_world: DAffine3::IDENTITY });
