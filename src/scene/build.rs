@@ -29,8 +29,9 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
     let materials = each(root, "materials", &file.materials, |key, name, written| {
         Ok(Material { name, kind: material(key, written, &mut meshes)? })
     })?;
-    let lights =
-        each(root, "lights", &file.lights, |key, name, written| Ok(Light { name, kind: light(key, written, unit)? }))?;
+    let lights = each(root, "lights", &file.lights, |key, name, written| {
+        Ok(Light { name, kind: light(key, written, unit, &mut meshes)? })
+    })?;
     let objects = each(root, "objects", &file.objects, |key, name, written| {
         object(key, name, written, unit, &materials, &mut meshes)
     })?;

@@ -95,7 +95,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["lights", _, "motion"] => &["position", "direction", "irradiance", "intensity", "period"],
         ["lights", _, "directional"] => &["direction", "irradiance"],
         ["lights", _, "point"] => &["position", "intensity"],
-        ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "outer"],
+        ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "image", "up", "outer"],
         _ => &[],
     }
 }
