@@ -41,7 +41,7 @@ pub enum Emission {
         /// What the light is in.
         media: Media,
         /// Which share of its intensity goes where.
-        light: LightKind,
+        light: Box<LightKind>,
     },
 }
 
@@ -187,7 +187,7 @@ impl Cone {
     fn emission(self, apex: DVec3, intensity: [f64; 3], light: &LightKind, media: Media) -> Emission {
         let ([x, y], height) = (across(self.axis), self.height);
         let flux = DVec3::from(intensity) * TAU * height;
-        Emission::Cone { apex, frame: [self.axis, x, y], height, flux, media, light: light.clone() }
+        Emission::Cone { apex, frame: [self.axis, x, y], height, flux, media, light: Box::new(light.clone()) }
     }
 }
 
