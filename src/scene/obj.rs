@@ -105,22 +105,16 @@ impl Statements {
         let mut vertices = HashMap::new();
         for (line, face) in &self.faces {
             let mut vertex = |corner: &Corner| {
+                self.check(*line, corner)?;
                 let key = Corner {
                     coordinates: corner.coordinates.filter(|_| placed),
                     normal: corner.normal.filter(|_| own_normals),
                     ..*corner
                 };
-                let at = *self.positions.get(key.position).ok_or_else(|| beyond(*line, "vertex", key.position))?;
-                let along = match key.normal {
-                    Some(n) => *self.normals.get(n).ok_or_else(|| beyond(*line, "normal", n))?,
-                    None => made.get(key.position).copied().unwrap_or(Vec3::Y),
-                };
-                let missing = |t| beyond(*line, "texture coordinates", t);
-                let place = key.coordinates.map(|t| self.coordinates.get(t).ok_or_else(|| missing(t))).transpose()?;
                 Ok(*vertices.entry(key).or_insert_with(|| {
-                    mesh.positions.push(at);
-                    mesh.normals.push(along);
-                    mesh.coordinates.extend(place);
+                    mesh.positions.push(self.positions[key.position]);
+                    mesh.normals.push(key.normal.map_or_else(|| made[key.position], |n| self.normals[n]));
+                    mesh.coordinates.extend(key.coordinates.map(|t| self.coordinates[t]));
                     (mesh.positions.len() - 1) as u32
                 }))
             };
@@ -130,13 +124,22 @@ impl Statements {
         Ok(mesh)
     }
 
+    /// Whether a corner names what is there, used or not.
+    fn check(&self, line: usize, corner: &Corner) -> Result<(), ObjFault> {
+        let held = [
+            ("vertex", Some(corner.position), self.positions.len()),
+            ("texture coordinates", corner.coordinates, self.coordinates.len()),
+            ("normal", corner.normal, self.normals.len()),
+        ];
+        let missing = held.into_iter().find_map(|(what, index, count)| Some((what, index.filter(|i| *i >= count)?)));
+        missing.map_or(Ok(()), |(what, index)| Err(beyond(line, what, index)))
+    }
+
     /// One for each position, over all triangles that meet there, whatever their texture coordinates.
     fn normals_of_positions(&self) -> Result<Vec<Vec3>, ObjFault> {
         let mut triangles = vec![];
         for (line, face) in &self.faces {
-            if let Some(corner) = face.iter().find(|corner| corner.position >= self.positions.len()) {
-                return Err(beyond(*line, "vertex", corner.position));
-            }
+            face.iter().try_for_each(|corner| self.check(*line, corner))?;
             triangles.extend(fan(&face.iter().map(|corner| corner.position as u32).collect::<Vec<_>>()));
         }
         Ok(vertex_normals(&self.positions, &triangles))
@@ -166,9 +169,11 @@ fn triple<'t>(line: usize, words: impl Iterator<Item = &'t str>) -> Result<Vec3,
     numbers(line, words, "three finite numbers").map(Vec3::from_array)
 }
 
-/// A third, of pictures in depth, is passed over.
+/// The second is 0 where it is left out; a third, of pictures in depth, is passed over.
 fn pair<'t>(line: usize, words: impl Iterator<Item = &'t str>) -> Result<Vec2, ObjFault> {
-    numbers(line, words, "two finite numbers").map(Vec2::from_array)
+    let written: Vec<&str> = words.take(2).collect();
+    let zero = (written.len() == 1).then_some("0");
+    numbers(line, written.into_iter().chain(zero), "one or two finite numbers").map(Vec2::from_array)
 }
 
 fn numbers<'t, const N: usize>(

@@ -79,7 +79,9 @@ fn coordinates_that_are_none_are_named() {
     let mesh =
         "\n[objects.tri]\nmaterial = \"white\"\n[objects.tri.mesh]\nfile = \"tri.obj\"\nfit = 1\ncenter = [0, 0, 0]\n";
     for (obj, found, remedy) in [
-        ("v 0 0 0\nvt 1\n", "fewer at tri.obj:2", "repair the line"),
+        ("v 0 0 0\nvt\n", "fewer at tri.obj:2", "repair the line"),
+        ("v 0 0 0\nvt 0 0\nf 1/9 1/1 1\n", "texture coordinates 9 at tri.obj:3", "export it again"),
+        ("v 0 0 0\nvn 0 1 0\nf 1//9 1//1 1\n", "normal 9 at tri.obj:3", "export it again"),
         ("v 0 0 0\nvt 1 nan\n", "\"nan\" at tri.obj:2", "repair the line"),
         ("v 0 0 0\nvt 0 0\nf 1/1 1/1 1/2\n", "texture coordinates 2 at tri.obj:3", "export it again"),
         ("v 0 0 0\nvt 0 0\nf 1/1 1/1 1/0\n", "\"1/0\" at tri.obj:3", "from 1"),
