@@ -2,7 +2,7 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use super::{
-    Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Picture, Scene, Source, Texture, edges,
+    Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source, Texture, edges,
     error::SceneError,
     file::{CameraFile, Colour, DiffuseFile, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
     index::index,
@@ -133,11 +133,8 @@ fn diffuse(key: &Key, file: &DiffuseFile, meshes: &mut Meshes) -> Result<Materia
         return Err(key.key("albedo").fault("the key `albedo`, or a `texture`", "none", "add it"));
     }
     let albedo = key.key("albedo").share(file.albedo.unwrap_or(Colour([1.0; 3])))?;
-    let texture = file.texture.as_ref().map(|name| {
-        let at = key.key("texture");
-        let bytes = meshes.bytes(&at, name, "a readable picture")?;
-        Texture::new(key, Picture::read(&at, name, &bytes, "a surface's colours")?, file.repeat)
-    });
+    let texture =
+        file.texture.as_ref().map(|name| Texture::new(key, meshes.picture(&key.key("texture"), name)?, file.repeat));
     if texture.is_none() && file.repeat.is_some() {
         let remedy = "add `texture`, or take `repeat` out";
         return Err(key.key("repeat").fault("a texture to repeat", "none", remedy));

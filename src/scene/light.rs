@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::{
-    Picture, Slide,
+    Slide,
     error::SceneError,
     file::{LightFile, SpotFile},
     locate::Key,
@@ -162,11 +162,8 @@ fn spot(key: &Key, file: &SpotFile, unit: f64, meshes: &mut Meshes) -> Result<Li
     // 2 sin²(θ/2); of 180°, rounding must not leave a direction out.
     let height = |degrees: f64| if degrees == 180.0 { 3.0 } else { 2.0 * (0.5 * degrees.to_radians()).sin().powi(2) };
     let axis = key.key("direction").direction(file.direction)?;
-    let slide = file.image.as_ref().map(|name| {
-        let at = key.key("image");
-        let bytes = meshes.bytes(&at, name, "a readable picture")?;
-        Slide::new(key, Picture::read(&at, name, &bytes, "what a beam throws")?, file.up, axis, outer)
-    });
+    let slide =
+        file.image.as_ref().map(|name| Slide::new(key, meshes.picture(&key.key("image"), name)?, file.up, axis, outer));
     if slide.is_none() && file.up.is_some() {
         return Err(key.key("up").fault("an image that stands upright", "none", "add `image`, or take `up` out"));
     }

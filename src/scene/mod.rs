@@ -53,7 +53,7 @@ pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
 pub use light::{Beam, Light, LightKind};
 pub use models::Models;
-pub use picture::{Picture, Texture};
+pub use picture::{MOST_PIXELS, Picture, Texture};
 pub use sheet::Sheet;
 pub use slide::Slide;
 pub use wave::Wave;

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 use glam::{DAffine3, DVec3};
 
 use super::{
-    Material, Mesh, Models, Object, Shape,
+    Material, Mesh, Models, Object, Picture, Shape,
     error::SceneError,
     file::{Floats, HeightsFile, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile, WaveFile},
     load::Files,
@@ -115,18 +115,19 @@ fn usable_side(key: &Key, side: f64) -> Result<f64, SceneError> {
     key.key("file").number(side, SIDES, "a mesh with a largest side", "scale the mesh in its file")
 }
 
-/// The meshes read so far, each once, and the hash over the scene and their bytes.
+/// The meshes and pictures read so far, each once, and the hash over the scene and their bytes.
 pub struct Meshes<'a> {
     files: &'a Files,
     hasher: blake3::Hasher,
     read: BTreeMap<String, Arc<Mesh>>,
+    pictures: BTreeMap<String, Arc<Picture>>,
 }
 
 impl<'a> Meshes<'a> {
     pub fn new(files: &'a Files, resolved: &str) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(resolved.as_bytes());
-        Meshes { files, hasher, read: BTreeMap::new() }
+        Meshes { files, hasher, read: BTreeMap::new(), pictures: BTreeMap::new() }
     }
 
     pub fn hash(&self) -> String {
@@ -151,6 +152,17 @@ impl<'a> Meshes<'a> {
         })?);
         self.read.insert(file.to_owned(), mesh.clone());
         Ok(mesh)
+    }
+
+    /// Of a texture or a slide.
+    pub fn picture(&mut self, key: &Key, file: &str) -> Result<Arc<Picture>, SceneError> {
+        if let Some(picture) = self.pictures.get(file) {
+            return Ok(picture.clone());
+        }
+        let bytes = self.bytes(key, file, "a readable picture")?;
+        let picture = Arc::new(Picture::read(key, file, &bytes)?);
+        self.pictures.insert(file.to_owned(), picture.clone());
+        Ok(picture)
     }
 
     /// Of a file beside the scene, which are of the scene from now on.

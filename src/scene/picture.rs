@@ -4,6 +4,8 @@ use std::sync::Arc;
 use super::{Material, MaterialKind, Shape, error::SceneError, file::Floats, locate::Key};
 use crate::image::Raster;
 
+/// Pixels at most: as float32 they fill the storage buffer that every device has, 2²⁷ bytes.
+pub const MOST_PIXELS: usize = (1 << 27) / 12;
 /// How often a picture may stand side by side: beyond it float32 loses its pixels.
 const REPEATS: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
@@ -31,13 +33,18 @@ pub struct Texture {
 }
 
 impl Picture {
-    /// From a file's bytes: PNG, whose values are sRGB's, or EXR, whose values are linear. `what` it is of, for messages.
-    pub fn read(key: &Key, file: &str, bytes: &[u8], what: &str) -> Result<Self, SceneError> {
+    /// From a file's bytes: PNG, whose values are sRGB's, or EXR, whose values are linear.
+    pub fn read(key: &Key, file: &str, bytes: &[u8]) -> Result<Self, SceneError> {
         let remedy = "save it again as PNG of 8 or 16 bits, or as EXR, grey or red, green and blue";
-        let fault = |found: String, remedy: &str| key.fault(format!("a picture of {what}"), found, remedy);
+        let fault = |found: String, remedy: &str| key.fault("an opaque picture of colours from 0 to 1", found, remedy);
         let raster = Raster::read(bytes).map_err(|error| fault(format!("{file}: {error}"), remedy))?;
+        let count = raster.width * raster.height;
+        if count > MOST_PIXELS {
+            let found = format!("{file}, which has {count} pixels");
+            return Err(key.fault(format!("at most {MOST_PIXELS} pixels"), found, "save it smaller"));
+        }
         let value = |sample: f32| if raster.linear { sample } else { decoded(sample) };
-        let mut pixels = Vec::with_capacity(raster.width * raster.height);
+        let mut pixels = Vec::with_capacity(count);
         for (index, pixel) in raster.samples.chunks_exact(raster.channels).enumerate() {
             let of = |what: String| {
                 let [x, y] = [index % raster.width, index / raster.width];
@@ -66,12 +73,12 @@ impl Picture {
 
 impl Texture {
     /// A picture, and how often it is repeated.
-    pub fn new(key: &Key, picture: Picture, repeat: Option<Floats<2>>) -> Result<Self, SceneError> {
+    pub fn new(key: &Key, picture: Arc<Picture>, repeat: Option<Floats<2>>) -> Result<Self, SceneError> {
         let repeat = repeat.unwrap_or(Floats([1.0, 1.0])).0;
         for times in repeat {
             key.key("repeat").number(times, REPEATS, "how often the picture is there", "1 shows it once")?;
         }
-        Ok(Self { picture: Arc::new(picture), repeat })
+        Ok(Self { picture, repeat })
     }
 }
 

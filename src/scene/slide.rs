@@ -9,7 +9,8 @@ use super::{Beam, Picture, error::SceneError, file::Floats, locate::Key};
 const PARALLEL: f64 = 1e-6;
 /// Widest half angle, degrees: beyond it the picture's middle would be a point beside its rim.
 const WIDEST: f64 = 85.0;
-/// Points of the picture along each side by which its flux is summed: 4·10⁻⁵ of a noisy picture's at 64² pixels.
+/// Points of the picture along each side by which its flux is summed: sixteen of them a pixel of a picture of 256², and of
+/// one of 1024² each pixel's middle.
 const POINTS: usize = 1024;
 
 /// A picture's rectangle across a beam, its corners on the outer cone.
@@ -27,7 +28,7 @@ impl Slide {
     /// In a cone of this outer half angle (degrees); `key` is that of the spot.
     pub fn new(
         key: &Key,
-        picture: Picture,
+        picture: Arc<Picture>,
         up: Option<Floats<3>>,
         axis: DVec3,
         outer: f64,
@@ -47,7 +48,7 @@ impl Slide {
         }
         let (aspect, reach) = (picture.width as f64 / picture.height as f64, outer.to_radians().tan());
         let height = reach / (1.0 + aspect * aspect).sqrt();
-        Ok(Self { picture: Arc::new(picture), up, half: [aspect * height, height] })
+        Ok(Self { picture, up, half: [aspect * height, height] })
     }
 
     /// Vectors to the right and up: their products with a direction, over its product with the axis, are −1 to 1 on the

@@ -18,6 +18,7 @@ const CASES: &[Case] = &[
     ("texture = \"folder\"", "materials.white.diffuse.texture", "a folder", "relative to the scene file"),
     ("texture = \"scene.toml\"", "materials.white.diffuse.texture", "begins like neither", "PNG of 8 or 16 bits"),
     ("texture = \"cut.png\"", "materials.white.diffuse.texture", "cut.png: ", "PNG of 8 or 16 bits"),
+    ("texture = \"large.png\"", "materials.white.diffuse.texture", "11560000 pixels", "save it smaller"),
     ("texture = \"clear.png\"", "materials.white.diffuse.texture",
         "pixel 1 from the left, 0 from the top lets light through", "without transparency"),
     ("texture = \"bright.exr\"", "materials.white.diffuse.texture",
@@ -34,6 +35,7 @@ const CASES: &[Case] = &[
 
 fn folder() -> Folder {
     let folder = Folder::new();
+    folder.write("large.png", png([3400, 3400], ColorType::Grayscale, BitDepth::Eight, &vec![7; 3400 * 3400]));
     let good = png([2, 1], ColorType::Rgb, BitDepth::Eight, &[0, 1, 2, 255, 254, 253]);
     folder.write("cut.png", &good[..good.len() / 2]);
     folder.write("good.png", good);

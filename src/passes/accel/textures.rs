@@ -1,8 +1,8 @@
 //! Textures and slides as the shaders read them: the pixels of all pictures in one array.
 use std::sync::Arc;
 
-use super::{AccelError, LARGEST_INDEX, Slide, Texture, check_count};
-use crate::scene::{Beam, LightKind, MaterialKind, Picture, Scene, Slide as SceneSlide};
+use super::{AccelError, Slide, Texture, check_count};
+use crate::scene::{Beam, LightKind, MOST_PIXELS, MaterialKind, Picture, Scene, Slide as SceneSlide};
 
 /// Of a scene; empty where it has none.
 #[derive(Clone, Debug, Default)]
@@ -28,12 +28,12 @@ impl Textures {
                 continue;
             };
             let picture = &texture.picture;
-            let before = known.iter().find(|(other, _)| other.file == picture.file).map(|(_, first)| *first);
+            let before = known.iter().find(|(other, _)| Arc::ptr_eq(other, picture)).map(|(_, first)| *first);
             let first = match before {
                 Some(first) => first,
                 None => {
                     let first = texels.len();
-                    check_count("pixels of textures", first + picture.pixels.len(), LARGEST_INDEX)?;
+                    check_count("pixels of textures", first + picture.pixels.len(), MOST_PIXELS)?;
                     texels.extend(&picture.pixels);
                     known.push((picture, first as u32));
                     first as u32
@@ -46,7 +46,7 @@ impl Textures {
         textures.texels = bytemuck::cast_slice(&texels).into();
         let slides: Vec<[f32; 3]> =
             slides(scene).flat_map(|(.., slide)| slide.picture.pixels.iter().copied()).collect();
-        check_count("pixels of slides", slides.len(), LARGEST_INDEX)?;
+        check_count("pixels of projected images", slides.len(), MOST_PIXELS)?;
         textures.slides = bytemuck::cast_slice(&slides).into();
         Ok(textures)
     }
