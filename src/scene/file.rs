@@ -7,6 +7,7 @@ use serde::{
 };
 
 use super::{
+    imports::ImportFile,
     index::IndexFile,
     motion_files::{LightMotionFile, ObjectMotionFile},
 };
@@ -32,6 +33,8 @@ pub struct SceneFile {
     pub materials: BTreeMap<String, MaterialFile>,
     #[serde(default)]
     pub lights: BTreeMap<String, LightFile>,
+    #[serde(default)]
+    pub imports: BTreeMap<String, ImportFile>,
 }
 
 #[derive(Deserialize)]
@@ -287,7 +290,7 @@ pub struct SpotFile {
     pub outer: f64,
 }
 
-fn one() -> f64 {
+pub fn one() -> f64 {
     1.0
 }
 
@@ -295,7 +298,7 @@ fn full_turn() -> f64 {
     360.0
 }
 
-fn yes() -> bool {
+pub fn yes() -> bool {
     true
 }
 

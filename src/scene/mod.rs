@@ -19,6 +19,8 @@ mod edges;
 mod error;
 mod file;
 mod format;
+mod gltf;
+mod imports;
 mod index;
 mod light;
 mod load;
@@ -46,6 +48,7 @@ use crate::names::NoSuch;
 pub use canonical::{Canonical, WHOLE};
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
+pub use imports::Import;
 pub use light::{Beam, Light, LightKind};
 pub use models::Models;
 pub use sheet::Sheet;
@@ -76,10 +79,13 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Sorted by name.
     pub lights: Vec<Light>,
+    /// What of all this came from glTF files, sorted by name.
+    pub imports: Vec<Import>,
     /// The time, s, at which all this is so; of a scene that stands still, 0.
     pub time: f64,
     motion: Option<Arc<motion::Motion>>,
-    /// What is no fault, but must be known to whoever reads its pictures: dielectric meshes with holes.
+    /// What is no fault, but must be known to whoever reads its pictures: dielectric meshes with holes, and what of a glTF
+    /// file is left out.
     pub warnings: Vec<String>,
 }
 
@@ -94,7 +100,7 @@ pub struct Source {
     pub overrides: Vec<(String, String)>,
     /// The scene as TOML with the overrides applied.
     pub resolved: String,
-    /// BLAKE3 (hexadecimal) of `resolved`, of every mesh file, and of the time where the scene moves.
+    /// BLAKE3 (hexadecimal) of `resolved`, of every mesh file and its buffers, and of the time where the scene moves.
     pub hash: String,
 }
 
@@ -126,7 +132,7 @@ impl Region {
 /// A shape and what it is made of.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// As in the file.
+    /// As in the file; `IMPORT/NODE` of a glTF file.
     pub name: String,
     /// In the world, metres.
     pub shape: Shape,
@@ -164,9 +170,9 @@ pub enum Shape {
     },
     /// Triangles.
     Mesh {
-        /// Shared by the objects that name the same file.
+        /// Shared by the objects that name the same file, or the same mesh of a glTF file.
         mesh: Arc<Mesh>,
-        /// Scales evenly, turns and moves.
+        /// Scales, turns and moves; only nodes of a glTF file stretch, and nothing mirrors.
         to_world: DAffine3,
     },
 }
