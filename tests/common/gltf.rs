@@ -1,4 +1,6 @@
 //! glTF files made in code.
+#![allow(dead_code)] // each test binary uses its own part
+
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
 

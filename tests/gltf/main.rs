@@ -5,6 +5,8 @@ use glam::{DAffine3, DVec3};
 use nephroid::scene::{LightKind, MaterialKind, Mesh, Object, Scene, SceneError, Shape};
 use tempfile::TempDir;
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../common/gltf.rs"]
 mod made;
 
@@ -13,6 +15,7 @@ mod looks;
 mod malformed;
 mod nodes;
 mod sound;
+mod twins;
 
 use made::Gltf;
 
