@@ -18,20 +18,29 @@ macro_rules! host {
 #[test]
 fn offsets_agree() {
     let host = [
-        host!("Node", accel::Node { lo, count, hi, first }),
+        host!("Node", accel::Node { corners, reference }),
         host!("Triangle", accel::Triangle { a, b, c }),
         host!("TriangleNormals", accel::TriangleNormals { a, b, c }),
-        host!("Instance", accel::Instance { to_object, to_world, kind, material, object, detail }),
-        host!("Material", accel::Material { kind, ior, colour, absorption }),
+        host!("Instance", accel::Instance { to_object, to_world, kind, material, object, detail, phase }),
+        host!("Material", accel::Material { kind, ior, colour, absorption, texture }),
+        host!("Texture", accel::Texture { first, size, repeat }),
+        host!("TriangleCoordinates", accel::TriangleCoordinates { a, b, c }),
         host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer }),
         host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),
         host!("FrameData", FrameData { eye, time, index, seed, eye_media }),
         host!("View", ViewData { origin, x0, right, x1, up, y0, forward, y1, near, far, perspective, pad }),
     ];
-    let defines: Vec<_> =
-        [("EVENTS", "2"), ("REFLECT", "0"), ("LIGHT_COUNT", "1"), ("HAS_QUADS", "1"), ("HAS_MESHES", "1")]
-            .map(|(a, b)| (a.to_owned(), b.to_owned()))
-            .to_vec();
+    let defines: Vec<_> = [
+        ("EVENTS", "2"),
+        ("REFLECT", "0"),
+        ("LIGHT_COUNT", "1"),
+        ("HAS_QUADS", "1"),
+        ("HAS_MESHES", "1"),
+        ("HAS_TEXTURES", "1"),
+        ("HAS_COORDINATES", "1"),
+    ]
+    .map(|(a, b)| (a.to_owned(), b.to_owned()))
+    .to_vec();
     let provided = [("capture.glsl", "maps/capture.glsl"), ("raster_view.glsl", "eye/raster_view.glsl")]
         .map(|(a, b)| (a.to_owned(), b.to_owned()));
     let mut seen: BTreeMap<(String, String), usize> = BTreeMap::new();

@@ -82,7 +82,9 @@ fn room_frames_the_table() {
 fn sine_water_frames_whole_waves() {
     let scene = load("sine-water");
     let Some(wave) = scene.objects.iter().find_map(|object| match object.shape {
-        Shape::Canonical { kind: Canonical::Sine { wave }, to_world } => Some(to_world.x_axis.length() * TAU / wave),
+        Shape::Canonical { kind: Canonical::Sine { wave, .. }, to_world } => {
+            Some(to_world.x_axis.length() * TAU / wave)
+        }
         _ => None,
     }) else {
         panic!("no wave")

@@ -8,6 +8,7 @@
 #include "eye/direct.glsl"
 #include "eye/gbuffer.glsl"
 #include "eye/medium.glsl"
+#include "shared/albedo.glsl"
 
 layout(location = 0) out vec4 irradiance;
 layout(location = 1) out vec4 radiance;
@@ -28,7 +29,7 @@ void main() {
         }
         vec3 e = direct_irradiance(s, d);
         irradiance.rgb += e;
-        radiance.rgb += e * m.colour / PI * eye_transmits(s.p);
+        radiance.rgb += e * albedo(s) / PI * eye_transmits(s.p);
     }
     irradiance /= float(samples);
     radiance /= float(samples);

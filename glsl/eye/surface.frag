@@ -6,6 +6,7 @@
 
 #include "eye/gbuffer.glsl"
 #include "eye/medium.glsl"
+#include "shared/albedo.glsl"
 #include "provider.glsl"
 
 layout(location = 0) out vec4 irradiance;
@@ -24,7 +25,7 @@ void main() {
         if (m.kind != MATERIAL_DIFFUSE) continue;
         vec3 e = surface_irradiance(s.p, facing_normal(s, d), s.object, s.uv);
         irradiance.rgb += e;
-        radiance.rgb += e * m.colour / PI * eye_transmits(s.p);
+        radiance.rgb += e * albedo(s) / PI * eye_transmits(s.p);
     }
     irradiance /= float(samples);
     radiance /= float(samples);

@@ -8,6 +8,7 @@
 #include "eye/direct.glsl"
 #include "eye/gbuffer.glsl"
 #include "eye/medium.glsl"
+#include "shared/albedo.glsl"
 #include "provider.glsl"
 
 layout(location = 0) out vec4 direct;
@@ -74,8 +75,9 @@ void look(Surface s, vec3 d) {
         Material m = scene_materials.data[at.material];
         vec3 share = b.share * medium_transmits(innermost(b.media), hit.t);
         if (m.kind == MATERIAL_DIFFUSE) {
-            direct.rgb += share * direct_irradiance(at, b.d) * m.colour / PI;
-            caustic.rgb += share * surface_irradiance(at.p, facing_normal(at, b.d), at.object, at.uv) * m.colour / PI;
+            share *= albedo(at) / PI;
+            direct.rgb += share * direct_irradiance(at, b.d);
+            caustic.rgb += share * surface_irradiance(at.p, facing_normal(at, b.d), at.object, at.uv);
         } else if (b.events < DEPTH) {
             split(at, b.d, share, b.media, b.events);
         }

@@ -25,9 +25,14 @@ uint nodes_visited = 0u;
 // One entry for each level of both trees together; the host refuses deeper trees, and an entry too many is dropped.
 const int TRAVERSAL_STACK = 64;
 
-// A node on the stack: its count above its first index. The host holds counts below 16 and indices below 2^28.
-uint node_reference(Node node) {
-    return node.count << 28 | node.first;
+Grid grid_of(uint tree) {
+    return Grid(uintBitsToFloat(scene_nodes.data[tree].corners), uintBitsToFloat(scene_nodes.data[tree + 1u].corners));
+}
+
+float enter_node(LocalRay ray, Grid grid, Node node) {
+    vec3 lo = grid.origin + grid.cell * vec3(node.corners & 0xffffu);
+    vec3 hi = grid.origin + grid.cell * vec3(node.corners >> 16);
+    return enter_box(ray, lo, hi);
 }
 
 vec3 map_point(vec4 rows[3], vec3 p) {
@@ -67,7 +72,7 @@ float hit_shape(Instance shape, LocalRay ray, float t_max, out uint primitive, o
     if (shape.kind == SHAPE_PARABOLOID) t = hit_paraboloid(ray, uintBitsToFloat(shape.detail), t_max, uv);
 #endif
 #ifdef HAS_SINES
-    if (shape.kind == SHAPE_SINE) t = hit_sine(ray, uintBitsToFloat(shape.detail), t_max, uv);
+    if (shape.kind == SHAPE_SINE) t = hit_sine(ray, vec2(uintBitsToFloat(shape.detail), shape.phase), t_max, uv);
 #endif
     return t;
 }
@@ -103,14 +108,14 @@ bool is_leaf(uint reference) {
 
 // The children of an inner node in the order they are gone into, and where the ray enters them: the nearer first, but a
 // leaf before an inner node, since what it holds is soon tested and may hide the other.
-void open_node(uint first, LocalRay ray, float t_max, out uvec2 children, out vec2 enter) {
+void open_node(uint first, Grid grid, LocalRay ray, float t_max, out uvec2 children, out vec2 enter) {
 #ifdef COUNT_NODES
     nodes_visited++;
 #endif
     Node left = scene_nodes.data[first];
     Node right = scene_nodes.data[first + 1u];
-    enter = vec2(enter_box(ray, left.lo, left.hi), enter_box(ray, right.lo, right.hi));
-    children = uvec2(node_reference(left), node_reference(right));
+    enter = vec2(enter_node(ray, grid, left), enter_node(ray, grid, right));
+    children = uvec2(left.reference, right.reference);
     bool leaf_left = is_leaf(children.x) && enter.x < t_max;
     bool leaf_right = is_leaf(children.y) && enter.y < t_max;
     if (leaf_left != leaf_right ? leaf_right : enter.x > enter.y) {
@@ -143,12 +148,12 @@ bool take_up(int base, float t_max, inout int height, out uint node) {
 // Goes down from `node` to the next leaf on the ray; false if there is none above `base`. Opening nodes and testing
 // leaves are loops of their own, so that rays of one group do the same thing at the same time.
 // Based on: Aila and Laine, Understanding the Efficiency of Ray Traversal on GPUs, HPG 2009 (while-while).
-bool next_leaf(LocalRay ray, float t_max, int base, inout int height, inout uint node) {
+bool next_leaf(LocalRay ray, Grid grid, float t_max, int base, inout int height, inout uint node) {
     bool have = true;
     while (have && !is_leaf(node)) {
         uvec2 children;
         vec2 enter;
-        open_node(node & 0x0fffffffu, ray, t_max, children, enter);
+        open_node(node & NODE_INDEX, grid, ray, t_max, children, enter);
         if (enter.y < t_max) put_off(children.y, enter.y, height);
         node = children.x;
         if (!(enter.x < t_max)) have = take_up(base, t_max, height, node);
@@ -158,14 +163,15 @@ bool next_leaf(LocalRay ray, float t_max, int base, inout int height, inout uint
 
 #ifdef HAS_MESHES
 // A mesh against the nearest hit so far, with the part of the stack above `height`.
-bool traverse_mesh(LocalRay ray, uint instance, uint root, bool any_hit, int height, inout Hit hit) {
-    Node top = scene_nodes.data[root];
-    if (!(enter_box(ray, top.lo, top.hi) < hit.t)) return false;
-    uint node = node_reference(top);
+bool traverse_mesh(LocalRay ray, uint instance, uint tree, bool any_hit, int height, inout Hit hit) {
+    Grid grid = grid_of(tree);
+    Node root = scene_nodes.data[tree + GRID_ENTRIES];
+    if (!(enter_node(ray, grid, root) < hit.t)) return false;
+    uint node = root.reference;
     int base = height;
     bool found = false;
-    while (next_leaf(ray, hit.t, base, height, node)) {
-        if (test_triangles(node & 0x0fffffffu, node >> 28, instance, ray, hit)) found = true;
+    while (next_leaf(ray, grid, hit.t, base, height, node)) {
+        if (test_triangles(node & NODE_INDEX, node >> 28, instance, ray, hit)) found = true;
         if (found && any_hit) break;
         if (!take_up(base, hit.t, height, node)) break;
     }
@@ -187,13 +193,14 @@ bool test_instance(uint index, vec3 o, vec3 d, uint mask, bool any_hit, int heig
 bool traverse(vec3 o, vec3 d, float t_max, uint mask, bool any_hit, out Hit hit) {
     hit = Hit(min(t_max, NO_HIT), 0u, 0u, vec2(0.0));
     LocalRay world = local_ray(o, d);
-    Node top = scene_nodes.data[0];
-    if (!(dot(abs(d), vec3(1.0)) > 0.0) || !(enter_box(world, top.lo, top.hi) < hit.t)) return false;
-    uint node = node_reference(top);
+    Grid grid = grid_of(0u);
+    Node root = scene_nodes.data[GRID_ENTRIES];
+    if (!(dot(abs(d), vec3(1.0)) > 0.0) || !(enter_node(world, grid, root) < hit.t)) return false;
+    uint node = root.reference;
     int height = 0;
     bool found = false;
-    while (next_leaf(world, hit.t, 0, height, node)) {
-        uint first = node & 0x0fffffffu, end = first + (node >> 28);
+    while (next_leaf(world, grid, hit.t, 0, height, node)) {
+        uint first = node & NODE_INDEX, end = first + (node >> 28);
         for (uint index = first; index < end && !(found && any_hit); index++) {
             if (test_instance(index, o, d, mask, any_hit, height, hit)) found = true;
         }

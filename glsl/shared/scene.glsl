@@ -1,4 +1,4 @@
-// The scene as the shaders read it: six buffers in scalar layout, filled by `passes/accel`.
+// The scene as the shaders read it: buffers in scalar layout, filled by `passes/accel`.
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
@@ -10,14 +10,24 @@
 #define HAS_CAST // shapes that the eye casts rays at; quads and meshes are rasterised as they are
 #endif
 
-// A node of a binary tree. count = 0: inner, its children are the nodes first and first + 1; else a leaf of `count`
-// primitives from `first`. All indices are absolute. The tree over the instances has its root at 0.
+// A node of a binary tree. `corners` is its box along x, y and z in cells of the tree's grid: the least corner in the low
+// half, the greatest in the high half. `reference` has a count in its upper four bits. 0: inner, its children are the
+// nodes from the index in the others on; else a leaf of so many primitives from that index on. All indices are absolute.
 struct Node {
-    vec3 lo;
-    uint count;
-    vec3 hi;
-    uint first;
+    uvec3 corners;
+    uint reference;
 };
+
+// A tree begins with its grid, origin and cell as the bits of floats in the corners of two nodes, and then its root. Cells
+// are powers of two, and the origin a whole number of them: float32 makes the corners exactly (`passes/accel/grid.rs`).
+// The tree over the instances begins at 0.
+struct Grid {
+    vec3 origin;
+    vec3 cell;
+};
+
+const uint GRID_ENTRIES = 2u;
+const uint NODE_INDEX = 0x0fffffffu;
 
 struct Triangle {
     vec3 a, b, c;
@@ -34,7 +44,8 @@ struct Instance {
     uint kind;
     uint material;
     uint object; // index of the object in the scene
-    uint detail; // mesh: its root in scene_nodes; cylinder, paraboloid: the bits of its cut; sine: of its wave
+    uint detail; // mesh: where its tree begins in scene_nodes; cylinder, paraboloid: the bits of its cut; sine: of its wave
+    float phase; // sine: radians
 };
 
 const uint SHAPE_SPHERE = 0u; // unit sphere at the origin
@@ -44,13 +55,14 @@ const uint SHAPE_BOX = 3u;        // [-1, 1]^3
 const uint SHAPE_DISK = 4u;       // unit disk in the xy-plane, normal +z
 const uint SHAPE_CYLINDER = 5u;   // x^2 + y^2 = 1, 0 <= z <= 1, x >= cut
 const uint SHAPE_PARABOLOID = 6u; // z = x^2 + y^2 <= 1, x >= cut
-const uint SHAPE_SINE = 7u;       // z = sin(wave x) over [-1, 1]^2
+const uint SHAPE_SINE = 7u;       // z = sin(wave x + phase) over [-1, 1]^2
 
 struct Material {
     uint kind;
     vec3 ior;        // of each band; of a conductor, the real part
     vec3 colour;     // albedo, or a mirror's reflectance
     vec3 absorption; // 1/m; of a conductor, the imaginary part of its index
+    uint texture;    // 1 + index in scene_textures; 0: none
 };
 
 const uint MATERIAL_DIFFUSE = 0u;
@@ -78,6 +90,21 @@ layout(set = 0, binding = 2, scalar) readonly buffer SceneNormals { TriangleNorm
 #endif
 layout(set = 0, binding = 3, scalar) readonly buffer SceneInstances { Instance data[]; } scene_instances;
 layout(set = 0, binding = 4, scalar) readonly buffer SceneMaterials { Material data[]; } scene_materials;
+#ifdef HAS_TEXTURES // passes that show colours, of a scene that has any
+struct Texture {
+    uint first;   // in scene_texels, rows from the top
+    uvec2 size;   // pixels
+    vec2 repeat;  // how often it is within 0 to 1
+};
+layout(set = 0, binding = 25, scalar) readonly buffer SceneTextures { Texture data[]; } scene_textures;
+layout(set = 0, binding = 26, scalar) readonly buffer SceneTexels { vec3 data[]; } scene_texels;
+#ifdef HAS_COORDINATES // of meshes
+struct TriangleCoordinates {
+    vec2 a, b, c;
+};
+layout(set = 0, binding = 27, scalar) readonly buffer SceneCoordinates { TriangleCoordinates data[]; } scene_coordinates;
+#endif
+#endif
 layout(set = 0, binding = 5, scalar) readonly buffer SceneLights { Light data[]; } scene_lights;
 
 // Share of a light's power that goes along unit d: of a spot, a smooth step between its two half angles. The height

@@ -15,6 +15,9 @@ struct Surface {
     uint object;
     uint material;
     float eps; // how far along ng a ray must start to be off the surface, metres
+#ifdef HAS_TEXTURES
+    vec2 place; // texture coordinates: (0, 0) at a picture's lower left
+#endif
 };
 
 // Bound on the rounding of one way object -> world -> object and of an intersection, in units of the coordinates
@@ -108,10 +111,30 @@ Surface surface_of_triangle(Instance shape, uint primitive, vec2 uv) {
 }
 #endif
 
+#ifdef HAS_TEXTURES
+// Texture coordinates of a place on a shape; around spheres and tubes a picture goes once.
+vec2 texture_place(uint kind, uint primitive, vec2 uv) {
+    const float TURN = 6.2831853;
+    if (kind == SHAPE_SPHERE) return vec2(uv.x / TURN + 0.5, uv.y / (0.5 * TURN) + 0.5);
+    if (kind == SHAPE_CYLINDER) return vec2(uv.x / TURN + 0.5, uv.y);
+#ifdef HAS_COORDINATES
+    if (kind == SHAPE_MESH) {
+        TriangleCoordinates at = scene_coordinates.data[primitive];
+        return (1.0 - uv.x - uv.y) * at.a + uv.x * at.b + uv.y * at.c;
+    }
+#endif
+    return 0.5 + 0.5 * uv;
+}
+#endif
+
 // Of a hit that `trace` found for this ray.
 Surface surface_at(vec3 o, vec3 d, Hit hit) {
     Instance shape = scene_instances.data[hit.instance];
-    Surface s = Surface(o, -d, -d, vec2(0.0), 0u, 0u, 0.0);
+    Surface s;
+    s.p = o;
+    s.ng = s.ns = -d;
+    s.uv = vec2(0.0);
+    s.eps = 0.0;
 #ifdef HAS_SPHERES
     if (shape.kind == SHAPE_SPHERE) {
         s = surface_of_sphere(shape, map_point(shape.to_object, o) + hit.t * map_vector(shape.to_object, d));
@@ -144,8 +167,9 @@ Surface surface_at(vec3 o, vec3 d, Hit hit) {
 #ifdef HAS_SINES
     if (shape.kind == SHAPE_SINE) {
         float wave = uintBitsToFloat(shape.detail);
-        vec3 local = vec3(hit.uv, sin(wave * hit.uv.x));
-        vec3 normal = vec3(-wave * cos(wave * hit.uv.x), 0.0, 1.0);
+        float angle = wave * hit.uv.x + shape.phase;
+        vec3 local = vec3(hit.uv, sin(angle));
+        vec3 normal = vec3(-wave * cos(angle), 0.0, 1.0);
         s = surface_of_canonical(shape, local, normal, hit.uv, 1.0 + wave);
     }
 #endif
@@ -154,6 +178,9 @@ Surface surface_at(vec3 o, vec3 d, Hit hit) {
 #endif
     s.object = shape.object;
     s.material = shape.material;
+#ifdef HAS_TEXTURES
+    s.place = texture_place(shape.kind, hit.primitive, s.uv);
+#endif
     return s;
 }
 

@@ -55,6 +55,10 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     print(&report, &args.list)
 }
 
+pub fn schema() -> Result<(), Failure> {
+    output::print(format!("{:#}\n", Scene::schema()).as_bytes())
+}
+
 fn print(report: &impl Report, args: &ListArgs) -> Result<(), Failure> {
     output::print(&report.write(args.format)?)
 }

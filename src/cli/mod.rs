@@ -57,6 +57,8 @@ enum Command {
     Methods(args::ListArgs),
     /// List the shipped scenes, or say what is in one
     Scenes(args::ScenesArgs),
+    /// Print the scene format as a JSON schema, by which editors complete keys and mark wrong ones
+    Schema,
     /// Print a script that completes commands and options in a shell
     Completions(args::CompletionsArgs),
 }
@@ -76,6 +78,7 @@ impl Cli {
             Command::Doctor(args) => list::doctor(&args),
             Command::Methods(args) => list::methods(&args),
             Command::Scenes(args) => list::scenes(&args),
+            Command::Schema => list::schema(),
             Command::Completions(args) => completions(args.shell),
         }
     }

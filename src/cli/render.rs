@@ -29,6 +29,9 @@ pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         return sequence::run(args, sequence);
     }
     let job = args.job.job()?;
+    if args.time != 0.0 && !job.scene.moves() {
+        warn(&[format!("nothing in {} moves: it is at {} s what it is at 0", job.scene.name, args.time)]);
+    }
     let planned = renderer::plan(&job)?;
     check_dumps(&args.dump, &planned.plan)?;
     // From here on there is something to take back.

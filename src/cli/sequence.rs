@@ -38,6 +38,10 @@ struct Making<'a> {
 /// Whatever can be found wrong is found before the first frame.
 pub fn run(args: &RenderArgs, sequence: Sequence) -> Result<(), Failure> {
     let job = args.job.job()?;
+    if !job.scene.moves() {
+        let remedy = "give an object or a light `motion`, or leave `--sequence` out";
+        warn(&[format!("nothing in {} moves, and all frames are one picture; {remedy}", job.scene.name)]);
+    }
     let planned = renderer::plan(&job)?;
     let stop = signals::stop_flag()?;
     drop(OutFolder::stage(&args.out)?); // it can be written to

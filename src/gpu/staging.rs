@@ -76,7 +76,15 @@ impl Plan {
     }
 
     fn hold<T: bytemuck::NoUninit>(&mut self, name: &str, items: &[T], lifetime: Lifetime) -> BufferId {
-        let content: Arc<[u8]> = bytemuck::cast_slice(items).into();
+        self.hold_bytes(name, bytemuck::cast_slice(items).into(), lifetime)
+    }
+
+    /// As [`Self::upload_once`], of bytes that are shared: none are copied where a scene moves.
+    pub fn upload_shared(&mut self, name: &str, content: Arc<[u8]>) -> BufferId {
+        self.hold_bytes(name, content, Lifetime::Persistent)
+    }
+
+    fn hold_bytes(&mut self, name: &str, content: Arc<[u8]>, lifetime: Lifetime) -> BufferId {
         self.buffers.push(BufferDecl {
             name: name.to_owned(),
             bytes: content.len() as u64,

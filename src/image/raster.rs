@@ -21,7 +21,9 @@ pub struct Raster {
     pub height: usize,
     /// Samples a pixel: grey, grey and alpha, red green blue, or those and alpha.
     pub channels: usize,
-    /// Pixel by pixel; of PNG 0 to 1, as they are stored.
+    /// Whether samples are linear light, as EXR's are; those of PNG are as they are stored.
+    pub linear: bool,
+    /// Pixel by pixel; of PNG 0 to 1.
     pub samples: Vec<f32>,
 }
 
@@ -66,7 +68,7 @@ impl Raster {
         if samples.len() != width * height * channels {
             return Err(refused(format!("{} samples for {width} × {height} pixels of {channels}", samples.len())));
         }
-        Ok(Self { width, height, channels, samples })
+        Ok(Self { width, height, channels, linear: false, samples })
     }
 
     fn from_exr(bytes: &[u8]) -> Result<Self, ImageError> {
@@ -77,6 +79,7 @@ impl Raster {
             width: layers.width(),
             height: layers.height(),
             channels: main.channels(),
+            linear: true,
             samples: main.data().to_vec(),
         })
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Cell, Report, Table};
 use crate::{
     metrics::bare_irradiance,
-    scene::{Camera, CameraKind, Import, Light, LightKind, Material, MaterialKind, Object, Region, Scene, Shape},
+    scene::{Camera, CameraKind, Import, LightKind, Material, MaterialKind, Region, Scene, Shape},
 };
 
 /// One scene.
@@ -22,6 +22,9 @@ pub struct SceneReport {
     /// What counts as the caustic.
     class: String,
     exposure_ev: f64,
+    moves: bool,
+    /// First and last time of a key.
+    keyed_s: Option<[f64; 2]>,
     /// How bright the region is without the specular objects.
     e0_w_m2: f64,
     region: RegionRow,
@@ -51,6 +54,8 @@ struct ObjectRow {
     triangles: Option<u64>,
     file: Option<String>,
     visible_to_camera: bool,
+    /// What of it changes with time.
+    moves: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -60,6 +65,8 @@ struct MaterialRow {
     /// By name, its unit included; of each band.
     #[serde(flatten)]
     values: BTreeMap<&'static str, [f64; 3]>,
+    /// By whose colours the albedo is multiplied.
+    texture: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -72,6 +79,8 @@ struct LightRow {
     power_w: Option<f64>,
     direction: Option<[f64; 3]>,
     position_m: Option<[f64; 3]>,
+    /// What of it changes with time.
+    moves: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -114,11 +123,13 @@ impl SceneReport {
             hash: scene.source.hash.clone(),
             class: scene.paths.to_string(),
             exposure_ev: scene.exposure,
+            moves: scene.moves(),
+            keyed_s: scene.keyed_span(),
             e0_w_m2: bare_irradiance(scene),
             region: RegionRow::new(scene, &scene.region),
-            objects: scene.objects.iter().map(|object| ObjectRow::new(scene, object)).collect(),
+            objects: (0..scene.objects.len()).map(|object| ObjectRow::new(scene, object)).collect(),
             materials: scene.materials.iter().map(MaterialRow::new).collect(),
-            lights: scene.lights.iter().map(LightRow::new).collect(),
+            lights: (0..scene.lights.len()).map(|light| LightRow::new(scene, light)).collect(),
             cameras: scene.cameras.iter().map(|(name, camera)| CameraRow::new(name, camera)).collect(),
             imports: scene.imports.iter().map(ImportRow::new).collect(),
             warnings: scene.warnings.clone(),
@@ -140,7 +151,8 @@ impl RegionRow {
 }
 
 impl ObjectRow {
-    fn new(scene: &Scene, object: &Object) -> Self {
+    fn new(scene: &Scene, index: usize) -> Self {
+        let object = &scene.objects[index];
         let (shape, mesh) = match &object.shape {
             Shape::Sphere { .. } => ("sphere", None),
             Shape::Quad { .. } => ("quad", None),
@@ -155,6 +167,7 @@ impl ObjectRow {
             triangles: mesh.map(|mesh| mesh.triangles.len() as u64),
             file: mesh.map(|mesh| mesh.file.clone()).filter(|file| !file.is_empty()),
             visible_to_camera: object.visible_to_camera,
+            moves: scene.object_motion(index),
         }
     }
 }
@@ -162,24 +175,30 @@ impl ObjectRow {
 impl MaterialRow {
     fn new(material: &Material) -> Self {
         let (kind, values) = match material.kind {
-            MaterialKind::Diffuse { albedo } => ("diffuse", vec![("albedo", albedo)]),
+            MaterialKind::Diffuse { albedo, .. } => ("diffuse", vec![("albedo", albedo)]),
             MaterialKind::Dielectric { ior, absorption } => {
                 ("dielectric", vec![("ior", ior), ("absorption_per_m", absorption)])
             }
             MaterialKind::Mirror { reflectance } => ("mirror", vec![("reflectance", reflectance)]),
             MaterialKind::Conductor { eta, k } => ("conductor", vec![("eta", eta), ("k", k)]),
         };
-        Self { name: material.name.clone(), kind, values: values.into_iter().collect() }
+        let texture = match &material.kind {
+            MaterialKind::Diffuse { texture, .. } => texture.as_ref().map(|texture| texture.picture.file.clone()),
+            _ => None,
+        };
+        Self { name: material.name.clone(), kind, values: values.into_iter().collect(), texture }
     }
 
     fn text(&self) -> String {
         let value = |(name, bands): (&&str, &[f64; 3])| format!("{} {}", name.replace('_', " "), shown(*bands));
-        self.values.iter().map(value).collect::<Vec<_>>().join(", ")
+        let texture = self.texture.iter().map(|file| format!("texture {file}"));
+        self.values.iter().map(value).chain(texture).collect::<Vec<_>>().join(", ")
     }
 }
 
 impl LightRow {
-    fn new(light: &Light) -> Self {
+    fn new(scene: &Scene, index: usize) -> Self {
+        let light = &scene.lights[index];
         let (kind, direction) = match &light.kind {
             LightKind::Directional { direction, .. } => ("directional", Some(*direction)),
             LightKind::Point { .. } => ("point", None),
@@ -192,6 +211,7 @@ impl LightRow {
             power_w: light.kind.flux().map(|bands| bands.iter().sum::<f64>() / 3.0),
             direction: direction.map(|d| d.to_array()),
             position_m: light.kind.position().map(|p| p.to_array()),
+            moves: scene.light_motion(index),
         }
     }
 
@@ -202,7 +222,7 @@ impl LightRow {
         let place = at.into_iter().chain(along).collect::<Vec<_>>().join(", ");
         let power = self.power_w.map_or(Cell::None, |watts| Cell::Real(watts, 4));
         let strength = Cell::text(format!("{} {unit}", shown(self.bands)));
-        vec![Cell::text(&self.name), Cell::text(self.kind), strength, power, Cell::text(place)]
+        vec![Cell::text(&self.name), Cell::text(self.kind), strength, power, Cell::text(place), moving(&self.moves)]
     }
 }
 
@@ -244,10 +264,16 @@ impl ImportRow {
 impl Report for SceneReport {
     fn heading(&self) -> Vec<String> {
         let [width, height] = self.region.size_m;
+        let moves = match self.keyed_s {
+            Some([from, to]) => format!("moves, keys from {from} to {to} s"),
+            None if self.moves => "moves, without an end".to_owned(),
+            None => "stands still".to_owned(),
+        };
         vec![
             format!("{}: {}", self.name, self.title),
             format!("{}, hash {}", self.file, self.hash),
             format!("caustic {}, exposure {} EV", self.class, self.exposure_ev),
+            moves,
             format!("region {width} x {height} m on {}, E0 {:.4} W/m2", self.region.receiver, self.e0_w_m2),
         ]
     }
@@ -258,7 +284,8 @@ impl Report for SceneReport {
             let file = o.file.as_ref().map_or(Cell::None, Cell::text);
             let seen = if o.visible_to_camera { "yes" } else { "no" };
             let [name, shape, material] = [o.name.as_str(), o.shape, &o.material].map(Cell::text);
-            vec![name, shape, Cell::text(size), material, Cell::count(o.triangles), file, Cell::text(seen)]
+            let triangles = Cell::count(o.triangles);
+            vec![name, shape, Cell::text(size), material, triangles, file, Cell::text(seen), moving(&o.moves)]
         });
         let materials =
             self.materials.iter().map(|m| vec![Cell::text(&m.name), Cell::text(m.kind), Cell::text(m.text())]);
@@ -270,11 +297,11 @@ impl Report for SceneReport {
         let mut all = vec![
             table(
                 "objects",
-                &["object", "shape", "size m", "material", "triangles", "file", "seen"],
+                &["object", "shape", "size m", "material", "triangles", "file", "seen", "moves"],
                 objects.collect(),
             ),
             table("materials", &["material", "kind", "what it does"], materials.collect()),
-            table("lights", &["light", "kind", "strength", "power W", "place"], lights.collect()),
+            table("lights", &["light", "kind", "strength", "power W", "place", "moves"], lights.collect()),
             table("cameras", &["camera", "kind", "field", "looks", "sees"], cameras.collect()),
         ];
         if !imports.is_empty() {
@@ -294,6 +321,10 @@ impl Report for SceneReport {
         let scene = Table { name: "scene", columns: columns.to_vec(), rows };
         [scene].into_iter().chain(self.tables()).collect()
     }
+}
+
+fn moving(names: &[&str]) -> Cell {
+    if names.is_empty() { Cell::None } else { Cell::text(names.join(", ")) }
 }
 
 /// One number where all bands are alike.

@@ -228,7 +228,7 @@ impl Eye<'_> {
 
     fn direct(&mut self, lights: usize) -> (ImageId, ImageId) {
         let (irradiance, radiance) = (self.target("eye/irradiance.direct"), self.target("eye/direct"));
-        let pass = self.plan.pass("eye/direct");
+        let pass = self.buffers.colours(self.plan.pass("eye/direct"));
         let pass = match lights {
             0 => self.buffers.surfaces(pass),
             _ => self.buffers.lights(self.buffers.tracing(pass)),
@@ -246,7 +246,7 @@ impl Eye<'_> {
     fn surface(&mut self, provider: &SurfaceProvider) -> (ImageId, ImageId) {
         let (irradiance, radiance) = (self.target("eye/irradiance.caustic"), self.target("eye/caustic"));
         self.buffers
-            .surfaces(self.plan.pass("eye/surface"))
+            .surfaces(self.buffers.colours(self.plan.pass("eye/surface")))
             .with(provider.reads.iter().copied())
             .provide("provider.glsl", provider.file)
             .read("frame", self.frame)
@@ -269,7 +269,7 @@ impl Eye<'_> {
         let reads = surface.map(|s| s.reads.clone()).unwrap_or_default();
         let mut pass = self
             .buffers
-            .lights(self.buffers.tracing(self.plan.pass("eye/trace")))
+            .lights(self.buffers.tracing(self.buffers.colours(self.plan.pass("eye/trace"))))
             .with(reads)
             .provide("provider.glsl", surface.map_or("eye/no_surface.glsl", |s| s.file))
             .read("frame", self.frame)

@@ -1,8 +1,8 @@
-//! The scene's six buffers in a plan (`glsl/shared/scene.glsl`).
+//! The scene's buffers in a plan (`glsl/shared/scene.glsl`).
 
 use super::accel::{
-    Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SINE,
-    SHAPE_SPHERE, SceneArrays, Triangle,
+    GRID_ENTRIES, Instance, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD,
+    SHAPE_SINE, SHAPE_SPHERE, SceneArrays, Triangle,
 };
 use crate::{
     gpu::{BufferId, Draw, PassBuilder, Plan},
@@ -34,10 +34,20 @@ pub struct SceneBuffers {
     instances: BufferId,
     materials: BufferId,
     lights: Option<BufferId>,
+    textures: Option<TextureBuffers>,
     /// Kinds of shapes that there are.
     kinds: Vec<(u32, &'static str)>,
     has_spots: bool,
     is_dispersive: bool,
+}
+
+/// Of a scene with textures.
+#[derive(Clone, Copy, Debug)]
+struct TextureBuffers {
+    textures: BufferId,
+    texels: BufferId,
+    /// If one is on a mesh.
+    coordinates: Option<BufferId>,
 }
 
 impl SceneBuffers {
@@ -59,6 +69,12 @@ impl SceneBuffers {
             instances: plan.upload("scene/instances", &arrays.instances),
             materials: plan.upload_once("scene/materials", &arrays.materials),
             lights: (!scene.lights.is_empty()).then(|| plan.upload("scene/lights", &arrays.lights)),
+            textures: (!arrays.textures.all.is_empty()).then(|| TextureBuffers {
+                textures: plan.upload_once("scene/textures", &arrays.textures.all),
+                texels: plan.upload_shared("scene/texels", arrays.textures.texels.clone()),
+                coordinates: (!arrays.coordinates.is_empty())
+                    .then(|| plan.upload("scene/coordinates", &arrays.coordinates)),
+            }),
             kinds: KINDS.into_iter().filter(|(kind, _)| any(*kind)).collect(),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
             is_dispersive: scene.is_dispersive(),
@@ -78,6 +94,16 @@ impl SceneBuffers {
     /// For a pass that traces rays, and makes surfaces of what they hit.
     pub fn tracing<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         self.surfaces(pass).offer("scene_nodes", self.nodes)
+    }
+
+    /// For a pass that shows the colours of surfaces, beside what makes them.
+    pub fn colours<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let Some(TextureBuffers { textures, texels, coordinates }) = self.textures else { return pass };
+        let pass = pass.define("HAS_TEXTURES", 1).read("scene_textures", textures).read("scene_texels", texels);
+        match coordinates {
+            Some(coordinates) => pass.define("HAS_COORDINATES", 1).read("scene_coordinates", coordinates),
+            None => pass,
+        }
     }
 
     /// For a pass that asks the lights; nothing where there are none.
@@ -134,15 +160,15 @@ pub fn draws(scene: &Scene, arrays: &SceneArrays, keep: impl Fn(&Object) -> bool
     arrays.instances.iter().enumerate().filter_map(draw).collect()
 }
 
-/// First vertex and count of the triangles below a node: a mesh's leaves lie together.
-fn triangle_range(arrays: &SceneArrays, root: u32) -> (u32, u32) {
-    let (mut first, mut count, mut pending) = (u32::MAX, 0, vec![root]);
+/// First vertex and count of the triangles of a tree: a mesh's leaves lie together.
+fn triangle_range(arrays: &SceneArrays, tree: u32) -> (u32, u32) {
+    let (mut first, mut count, mut pending) = (u32::MAX, 0, vec![tree + GRID_ENTRIES]);
     while let Some(node) = pending.pop().and_then(|n| arrays.nodes.get(n as usize)) {
-        if node.count == 0 {
-            pending.extend([node.first, node.first + 1]);
+        if node.count() == 0 {
+            pending.extend([node.first(), node.first() + 1]);
         } else {
-            first = first.min(node.first);
-            count += node.count;
+            first = first.min(node.first());
+            count += node.count();
         }
     }
     if count == 0 { (0, 0) } else { (3 * first, 3 * count) }

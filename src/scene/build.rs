@@ -5,9 +5,9 @@ use std::{
 };
 
 use super::{
-    Camera, CameraKind, Light, Material, MaterialKind, Object, PathClassError, Scene, Source, edges,
+    Camera, CameraKind, Light, Material, MaterialKind, Object, PathClassError, Picture, Scene, Source, Texture, edges,
     error::SceneError,
-    file::{CameraFile, Colour, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
+    file::{CameraFile, Colour, DiffuseFile, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
     imports::imports,
     index::index,
     light::light,
@@ -15,7 +15,7 @@ use super::{
     locate::Key,
     motion::Motion,
     motion_files,
-    object::{Meshes, object},
+    object::{BESIDE, Meshes, object},
     patch,
 };
 
@@ -29,12 +29,12 @@ const FIELDS: std::ops::RangeInclusive<f64> = 0.001..=179.9;
 /// Checks every value and resolves every name; `source` still lacks its hash.
 pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &Files) -> Result<Scene, SceneError> {
     let unit = root.key("unit").number(file.unit, 1e-9..=1e9, "metres per unit of length", "1 means metres")?;
+    let mut meshes = Meshes::new(files, &source.resolved);
     let mut materials = each(root, "materials", &file.materials, |key, name, written| {
-        Ok(Material { name, kind: material(key, written)? })
+        Ok(Material { name, kind: material(key, written, &mut meshes)? })
     })?;
     let mut lights =
         each(root, "lights", &file.lights, |key, name, written| Ok(Light { name, kind: light(key, written, unit)? }))?;
-    let mut meshes = Meshes::new(files, &source.resolved);
     let imported = imports(root, &file.imports, unit, &materials, &mut meshes)?;
     materials.extend(imported.materials);
     materials.sort_by(|a, b| a.name.cmp(&b.name));
@@ -117,12 +117,9 @@ fn each<F, T>(
     files.iter().map(|(name, file)| make(&root.key(kind).key(name), name.clone(), file)).collect()
 }
 
-fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> {
+fn material(key: &Key, file: &MaterialFile, meshes: &mut Meshes) -> Result<MaterialKind, SceneError> {
     match (&file.diffuse, &file.dielectric, &file.mirror, &file.conductor) {
-        (Some(diffuse), None, None, None) => {
-            let albedo = key.key("diffuse").key("albedo").share(diffuse.albedo)?;
-            Ok(MaterialKind::Diffuse { albedo })
-        }
+        (Some(diffuse), None, None, None) => self::diffuse(&key.key("diffuse"), diffuse, meshes),
         (None, Some(dielectric), None, None) => {
             let key = key.key("dielectric");
             Ok(MaterialKind::Dielectric {
@@ -149,6 +146,23 @@ fn material(key: &Key, file: &MaterialFile) -> Result<MaterialKind, SceneError> 
         }
         _ => Err(key.one_kind(&["diffuse", "dielectric", "mirror", "conductor"])),
     }
+}
+
+fn diffuse(key: &Key, file: &DiffuseFile, meshes: &mut Meshes) -> Result<MaterialKind, SceneError> {
+    if file.albedo.is_none() && file.texture.is_none() {
+        return Err(key.key("albedo").fault("the key `albedo`, or a `texture`", "none", "add it"));
+    }
+    let albedo = key.key("albedo").share(file.albedo.unwrap_or(Colour([1.0; 3])))?;
+    let texture = file.texture.as_ref().map(|name| {
+        let at = key.key("texture");
+        let bytes = meshes.bytes(&at, name, "a readable picture", BESIDE)?;
+        Texture::new(key, Picture::read(&at, name, &bytes, "a surface's colours")?, file.repeat)
+    });
+    if texture.is_none() && file.repeat.is_some() {
+        let remedy = "add `texture`, or take `repeat` out";
+        return Err(key.key("repeat").fault("a texture to repeat", "none", remedy));
+    }
+    Ok(MaterialKind::Diffuse { albedo, texture: texture.transpose()? })
 }
 
 fn cameras(key: &Key, files: &BTreeMap<String, CameraFile>, unit: f64) -> Result<BTreeMap<String, Camera>, SceneError> {

@@ -25,10 +25,12 @@ pub enum Canonical {
         /// [`WHOLE`] for all of it.
         cut: f64,
     },
-    /// z = sin(`wave` x) over [−1, 1]², an open interface; its normal has z > 0.
+    /// z = sin(`wave` x + `phase`) over [−1, 1]², an open interface; its normal has z > 0.
     Sine {
         /// Radians.
         wave: f64,
+        /// Radians.
+        phase: f64,
     },
 }
 
@@ -65,8 +67,8 @@ impl Canonical {
     /// The first meeting after `near` with the ray o + t d, in lengths of d. A ray that starts on the shape starts at 0
     /// exactly, so that no tolerance decides whether it meets it again.
     pub fn meet(&self, o: DVec3, d: DVec3, near: f64, starts_here: bool) -> Option<f64> {
-        if let Self::Sine { wave } = *self {
-            return sine::meet(wave, o, d, near, starts_here);
+        if let Self::Sine { wave, phase } = *self {
+            return sine::meet([wave, phase], o, d, near, starts_here);
         }
         let crossings = match self {
             Self::Box => slabs(o, d),
@@ -108,8 +110,8 @@ impl Canonical {
                 let out = p.with_z(0.0).normalize_or(DVec3::X);
                 (out.with_z(p.z), out)
             }
-            Self::Sine { wave } => {
-                let (sin, cos) = (wave * p.x).sin_cos();
+            Self::Sine { wave, phase } => {
+                let (sin, cos) = (wave * p.x + phase).sin_cos();
                 (p.with_z(sin), DVec3::new(-wave * cos, 0.0, 1.0))
             }
             Self::Paraboloid { .. } => (p.with_z(flat(p, p)), DVec3::new(2.0 * p.x, 2.0 * p.y, -1.0)),
@@ -165,14 +167,15 @@ fn bowl(o: DVec3, d: DVec3) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    const ALL: [Canonical; 7] = [
+    const ALL: [Canonical; 8] = [
         Canonical::Box,
         Canonical::Disk,
         Canonical::Cylinder { cut: WHOLE },
         Canonical::Cylinder { cut: 0.3 },
         Canonical::Paraboloid { cut: WHOLE },
         Canonical::Paraboloid { cut: 0.3 },
-        Canonical::Sine { wave: 9.0 },
+        Canonical::Sine { wave: 9.0, phase: 0.0 },
+        Canonical::Sine { wave: 9.0, phase: -2.0 },
     ];
     /// Some dozen roundings on numbers of order ten.
     const ROUNDING: f64 = 1e-13;

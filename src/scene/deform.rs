@@ -80,7 +80,8 @@ impl Deformers {
             ((back * (p - aside)).as_vec3(), n.try_normalize().map_or(*normal, |n| n.as_vec3()))
         };
         let (positions, normals) = mesh.positions.iter().zip(&mesh.normals).map(moved).unzip();
-        Mesh { file: mesh.file.clone(), positions, normals, triangles: mesh.triangles.clone(), sheet: mesh.sheet }
+        let (triangles, coordinates) = (mesh.triangles.clone(), mesh.coordinates.clone());
+        Mesh { file: mesh.file.clone(), positions, normals, triangles, coordinates, sheet: mesh.sheet }
     }
 
     fn map(&self, p: DVec3, time: f64) -> Map {
@@ -242,8 +243,14 @@ mod tests {
             [[index(i, j), index(i + 1, j), index(i + 1, j + 1)], [index(i, j), index(i + 1, j + 1), index(i, j + 1)]]
         };
         let triangles = (0..SIDE).flat_map(|i| (0..SIDE).flat_map(move |j| cell(i, j))).collect();
-        let mesh =
-            Mesh { file: String::new(), normals: vec![Vec3::Y; positions.len()], positions, triangles, sheet: None };
+        let mesh = Mesh {
+            file: String::new(),
+            normals: vec![Vec3::Y; positions.len()],
+            positions,
+            triangles,
+            coordinates: vec![],
+            sheet: None,
+        };
         let map = DAffine3::from_scale_rotation_translation(
             DVec3::splat(0.5),
             DQuat::from_rotation_z(0.4),

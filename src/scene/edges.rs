@@ -179,7 +179,14 @@ mod tests {
         let corners: Vec<u32> = quads.iter().flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).collect();
         let positions: Vec<Vec3> = corners.iter().map(|&k| corner(k)).collect();
         let triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        Mesh { file: "cube.obj".to_owned(), normals: vec![Vec3::Y; positions.len()], positions, triangles, sheet: None }
+        Mesh {
+            file: "cube.obj".to_owned(),
+            normals: vec![Vec3::Y; positions.len()],
+            positions,
+            triangles,
+            coordinates: vec![],
+            sheet: None,
+        }
     }
 
     #[test]
@@ -227,7 +234,14 @@ mod tests {
 
     #[test]
     fn a_mesh_of_nothing_has_no_fault() {
-        let nothing = Mesh { file: String::new(), positions: vec![], normals: vec![], triangles: vec![], sheet: None };
+        let nothing = Mesh {
+            file: String::new(),
+            positions: vec![],
+            normals: vec![],
+            triangles: vec![],
+            coordinates: vec![],
+            sheet: None,
+        };
         assert_eq!(Faults::of(&nothing), Faults::default());
     }
 }

@@ -1,51 +1,67 @@
 //! The scene file, version 1, as it is written: names unresolved, lengths in the file's own unit.
-use std::{collections::BTreeMap, fmt};
+use std::collections::BTreeMap;
 
-use serde::{
-    Deserialize, Deserializer,
-    de::{Error, IgnoredAny, SeqAccess, Unexpected, Visitor},
-};
+use schemars::JsonSchema;
+use serde::Deserialize;
 
+pub use super::numbers::{Colour, Floats};
 use super::{
     imports::ImportFile,
     index::IndexFile,
     motion_files::{LightMotionFile, ObjectMotionFile},
+    schema,
 };
 
 /// The one version there is.
 pub const VERSION: i64 = 1;
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
+    /// Of this format: 1.
     #[serde(rename = "version")]
     _version: i64,
+    /// One line for lists and reports.
     pub title: String,
+    /// Length of one unit of this file, m.
     #[serde(default = "one")]
     pub unit: f64,
+    /// What counts as the caustic: `reflect-1`, `transmit-1`, `transmit-2`, or `all:N`, every chain of up to N specular events.
+    #[schemars(extend("pattern" = "^(reflect-1|transmit-1|transmit-2|all:[0-9]+)$"))]
     pub paths: String,
+    /// Of the picture, EV: linear values are multiplied by 2^exposure.
     #[serde(default)]
     pub exposure: f64,
+    /// Where errors are judged.
     pub region: RegionFile,
+    /// What a caustic map covers for cameras other than `region`.
     pub extent: Option<PatchFile>,
+    /// `main` is needed; `region` is made from the region.
     pub cameras: BTreeMap<String, CameraFile>,
+    /// Shapes, each with a material.
     pub objects: BTreeMap<String, ObjectFile>,
+    /// What surfaces do to light; each is the identity of its medium.
     pub materials: BTreeMap<String, MaterialFile>,
+    /// Together they light the scene.
     #[serde(default)]
     pub lights: BTreeMap<String, LightFile>,
+    /// glTF files whose objects, materials, lights and cameras come along as `NAME/…`.
     #[serde(default)]
     pub imports: BTreeMap<String, ImportFile>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionFile {
+    /// Name of an object: a diffuse quad.
     pub receiver: String,
+    /// On the receiver, along its u and v.
     pub center: Floats<2>,
+    /// Half edges.
     pub half: Floats<2>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatchFile {
     /// Else the region's.
@@ -55,130 +71,191 @@ pub struct PatchFile {
 }
 
 /// Exactly one kind is given, as in the tables below.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = schema::one_kind)]
 pub struct CameraFile {
+    /// Its rays leave one point.
     pub pinhole: Option<PinholeFile>,
+    /// Its rays leave along its axis.
     pub orthographic: Option<OrthographicFile>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PinholeFile {
+    /// The eye.
     pub position: Floats<3>,
+    /// A point on the camera's axis.
     pub target: Floats<3>,
+    /// Upright in the picture.
     #[serde(default = "upwards")]
     pub up: Floats<3>,
+    /// Leave out specular objects, so that the receiver is seen bare.
     #[serde(default)]
     pub hides_specular: bool,
+    /// Whole vertical field of view, degrees.
     pub fov_y: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrthographicFile {
+    /// On its axis.
     pub position: Floats<3>,
+    /// A point on its axis.
     pub target: Floats<3>,
+    /// Upright in the picture.
     #[serde(default = "upwards")]
     pub up: Floats<3>,
+    /// Leave out specular objects, so that the receiver is seen bare.
     #[serde(default)]
     pub hides_specular: bool,
+    /// From the lower to the upper edge.
     pub height: f64,
+    /// From edge to edge; without it, it follows from the picture's shape.
     pub width: Option<f64>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = schema::one_kind)]
 pub struct ObjectFile {
+    /// Name of one of the materials.
     pub material: String,
+    /// A hidden object still refracts, reflects and shadows.
     #[serde(default = "yes")]
     pub visible_to_camera: bool,
+    /// Closed.
     pub sphere: Option<SphereFile>,
+    /// A rectangle, an open interface.
     pub quad: Option<QuadFile>,
+    /// Closed.
     pub r#box: Option<BoxFile>,
+    /// An open interface.
     pub disk: Option<DiskFile>,
+    /// An open tube, or an arc of it.
     pub cylinder: Option<CylinderFile>,
+    /// An open bowl, or an off-axis part of it.
     pub paraboloid: Option<ParaboloidFile>,
+    /// A sine wave over a rectangle, an open interface.
     pub sine: Option<SineFile>,
+    /// A picture as heights over a rectangle, an open interface.
     pub heights: Option<HeightsFile>,
+    /// The wave function of rendered water (GPU Gems, 2004), an open interface.
     pub wave: Option<WaveFile>,
+    /// Triangles of a file.
     pub mesh: Option<MeshFile>,
+    /// Keys in time.
     pub motion: Option<ObjectMotionFile>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereFile {
+    /// In lengths of the file.
     pub center: Floats<3>,
+    /// In lengths of the file.
     pub radius: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QuadFile {
+    /// Of the rectangle.
     pub center: Floats<3>,
+    /// Half edge.
     pub u: Floats<3>,
+    /// Half edge, at right angles to u; u × v points to the lit side.
     pub v: Floats<3>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxFile {
+    /// Of the box.
     pub center: Floats<3>,
+    /// Three half edges.
     pub half: Floats<3>,
+    /// Degrees about x, then y, then z.
     #[serde(default)]
     pub rotate: Floats<3>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiskFile {
+    /// Of the disk.
     pub center: Floats<3>,
+    /// To the lit side.
     pub normal: Floats<3>,
+    /// In lengths of the file.
     pub radius: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderFile {
+    /// Centre of one end.
     pub base: Floats<3>,
+    /// From there to the other end.
     pub axis: Floats<3>,
+    /// In lengths of the file.
     pub radius: f64,
+    /// Along the axis.
     pub height: f64,
+    /// Degrees of the circle that are there.
     #[serde(default = "full_turn")]
     pub arc: f64,
     /// Needed where the arc is less than a full turn.
     pub middle: Option<Floats<3>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParaboloidFile {
+    /// Its deepest point.
     pub vertex: Floats<3>,
+    /// From the vertex to the focus.
     pub axis: Floats<3>,
+    /// From the vertex to the focus.
     pub focal_length: f64,
+    /// Radius of the rim.
     pub rim: f64,
     /// With `middle`, an off-axis part.
     pub from: Option<f64>,
+    /// From the axis to the middle of the part.
     pub middle: Option<Floats<3>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SineFile {
+    /// Of the rectangle.
     pub center: Floats<3>,
+    /// Half edge; the wave runs along it.
     pub u: Floats<3>,
+    /// Half edge, at right angles to u.
     pub v: Floats<3>,
+    /// Half the height from trough to crest.
     pub amplitude: f64,
+    /// Along u.
     pub wavelength: f64,
+    /// Lengths a second, along u.
+    #[serde(default)]
+    pub speed: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeightsFile {
+    /// A grey PNG, or an EXR of one channel.
     pub file: String,
+    /// Of the rectangle.
     pub center: Floats<3>,
+    /// Half edge.
     pub u: Floats<3>,
+    /// Half edge, at right angles to u; the picture's upper edge is at +v.
     pub v: Floats<3>,
     /// Of a pixel of value 1; of PNG, white.
     pub height: f64,
@@ -190,103 +267,145 @@ pub struct HeightsFile {
 }
 
 /// Constants that are left out are the paper's.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaveFile {
+    /// Of the rectangle.
     pub center: Floats<3>,
+    /// Half edge.
     pub u: Floats<3>,
+    /// Half edge, at right angles to u.
     pub v: Floats<3>,
     /// Of one unit of the wave; else the edge along u.
     pub length: Option<f64>,
     /// The wave's own coordinates at the centre.
     pub middle: Option<Floats<2>>,
+    /// Terms of the sum.
     pub octaves: Option<u32>,
+    /// WAVESIZE of the paper.
     pub wave_size: Option<f64>,
+    /// FACTOR of the paper: of the first term; each next has half.
     pub factor: Option<f64>,
+    /// SPEED of the paper, radians a second.
     pub speed: Option<f64>,
+    /// VTXSIZE of the paper.
     pub vertex_size: Option<f64>,
+    /// s, where the scene's time is 0.
     #[serde(default)]
     pub time: f64,
+    /// Cells along the longer side.
     pub grid: Option<u32>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFile {
+    /// Path of an OBJ or glTF file, or `model:NAME` of the models folder.
     pub file: String,
+    /// Longest side of its bounding box.
     pub fit: f64,
+    /// Of its bounding box.
     pub center: Floats<3>,
+    /// Degrees about x, then y, then z.
     #[serde(default)]
     pub rotate: Floats<3>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = schema::one_kind)]
 pub struct MaterialFile {
+    /// Lambertian: a receiver.
     pub diffuse: Option<DiffuseFile>,
+    /// Smooth and clear.
     pub dielectric: Option<DielectricFile>,
+    /// Reflects a share of the light at every angle.
     pub mirror: Option<MirrorFile>,
+    /// A smooth metal.
     pub conductor: Option<ConductorFile>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiffuseFile {
-    pub albedo: Colour,
+    /// Share of the light sent back, 0 to 1; with a texture, by what its colours are multiplied.
+    pub albedo: Option<Colour>,
+    /// A PNG or an EXR, which the surface shows.
+    pub texture: Option<String>,
+    /// How often the picture is there along each coordinate of the surface.
+    pub repeat: Option<Floats<2>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DielectricFile {
+    /// Index of refraction against vacuum.
     pub ior: IndexFile,
+    /// 1/m.
     #[serde(default)]
     pub absorption: Colour,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MirrorFile {
+    /// Share of the light reflected, 0 to 1.
     pub reflectance: Colour,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConductorFile {
+    /// Real part of its complex index.
     pub eta: Colour,
+    /// Imaginary part of its complex index.
     pub k: Colour,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = schema::one_kind)]
 pub struct LightFile {
+    /// Parallel light.
     pub directional: Option<DirectionalFile>,
+    /// Light from a point, alike on all sides.
     pub point: Option<PointFile>,
+    /// Light from a point within a cone.
     pub spot: Option<SpotFile>,
+    /// Keys in time.
     pub motion: Option<LightMotionFile>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DirectionalFile {
+    /// The way that the light travels.
     pub direction: Floats<3>,
+    /// Of a plane that faces the light, W/m².
     pub irradiance: Colour,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointFile {
+    /// In lengths of the file.
     pub position: Floats<3>,
+    /// W/sr.
     pub intensity: Colour,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpotFile {
+    /// In lengths of the file.
     pub position: Floats<3>,
+    /// The cone's axis, the way that the light travels.
     pub direction: Floats<3>,
+    /// On the axis, W/sr.
     pub intensity: Colour,
     /// Degrees from the axis; without it the edge is sharp.
     pub inner: Option<f64>,
+    /// Degrees from the axis at which the light ends.
     pub outer: f64,
 }
 
@@ -304,62 +423,4 @@ pub fn yes() -> bool {
 
 fn upwards() -> Floats<3> {
     Floats([0.0, 1.0, 0.0])
-}
-
-/// Exactly N numbers; the library's own arrays let surplus ones pass.
-#[derive(Clone, Copy)]
-pub struct Floats<const N: usize>(pub [f64; N]);
-
-impl<const N: usize> Default for Floats<N> {
-    fn default() -> Self {
-        Floats([0.0; N])
-    }
-}
-
-impl<'de, const N: usize> Deserialize<'de> for Floats<N> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Numbers { single: false }).map(Floats)
-    }
-}
-
-/// One number for all three bands, or `[red, green, blue]`.
-#[derive(Clone, Copy, Default)]
-pub struct Colour(pub [f64; 3]);
-
-impl<'de> Deserialize<'de> for Colour {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Numbers { single: true }).map(Colour)
-    }
-}
-
-struct Numbers<const N: usize> {
-    /// A lone number stands for N equal ones.
-    single: bool,
-}
-
-impl<'de, const N: usize> Visitor<'de> for Numbers<N> {
-    type Value = [f64; N];
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}an array of {N} numbers", if self.single { "a number or " } else { "" })
-    }
-
-    fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
-        if self.single { Ok([value; N]) } else { Err(E::invalid_type(Unexpected::Other("one number"), &self)) }
-    }
-
-    fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
-        self.visit_f64(value as f64)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
-        let mut values = [0.0; N];
-        for (i, value) in values.iter_mut().enumerate() {
-            *value = sequence.next_element()?.ok_or_else(|| A::Error::invalid_length(i, &self))?;
-        }
-        match sequence.next_element::<IgnoredAny>()? {
-            None => Ok(values),
-            Some(_) => Err(A::Error::invalid_length(N + 1, &self)),
-        }
-    }
 }

@@ -68,7 +68,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _, "disk"] => &["center", "normal", "radius"],
         ["objects", _, "cylinder"] => &["base", "axis", "radius", "height", "arc", "middle"],
         ["objects", _, "paraboloid"] => &["vertex", "axis", "focal_length", "rim", "from", "middle"],
-        ["objects", _, "sine"] => &["center", "u", "v", "amplitude", "wavelength"],
+        ["objects", _, "sine"] => &["center", "u", "v", "amplitude", "wavelength", "speed"],
         ["objects", _, "heights"] => &["file", "center", "u", "v", "height", "base", "grid"],
         ["objects", _, "wave"] => &[
             "center",
@@ -89,7 +89,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["objects", _, "motion", "twist"] => &["axis", "angle"],
         ["objects", _, "motion", "bend"] => &["along", "towards", "angle"],
         ["objects", _, "motion", "wave"] => &["along", "towards", "amplitude", "wavelength", "speed"],
-        ["materials", _, "diffuse"] => &["albedo"],
+        ["materials", _, "diffuse"] => &["albedo", "texture", "repeat"],
         ["materials", _, "dielectric"] => &["ior", "absorption"],
         ["materials", _, "mirror"] => &["reflectance"],
         ["materials", _, "conductor"] => &["eta", "k"],

@@ -1,12 +1,17 @@
 //! Indices of refraction: as a number, a number a band, by Cauchy's equation, or by the name of a material.
-use std::fmt;
+use std::{borrow::Cow, fmt};
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{
     Deserialize, Deserializer,
     de::{Error, MapAccess, SeqAccess, Visitor, value::SeqAccessDeserializer},
 };
 
-use super::{error::SceneError, file::Floats, locate::Key};
+use super::{
+    error::SceneError,
+    file::{Colour, Floats},
+    locate::Key,
+};
 
 /// Indices: beyond any real one on both sides.
 const INDICES: std::ops::RangeInclusive<f64> = 0.1..=10.0;
@@ -43,6 +48,29 @@ pub enum IndexFile {
 impl<'de> Deserialize<'de> for IndexFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(Written)
+    }
+}
+
+impl JsonSchema for IndexFile {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Index".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [
+            Colour::json_schema(generator),
+            { "enum": NAMED.map(|(name, _)| name) },
+            {
+                "type": "object",
+                "properties": { "cauchy": Floats::<2>::json_schema(generator) },
+                "required": ["cauchy"],
+                "additionalProperties": false,
+            },
+        ] })
     }
 }
 

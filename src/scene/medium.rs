@@ -143,7 +143,7 @@ mod tests {
         positions[7] = notch;
         let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [7, 3, 2, 6], [0, 2, 3, 1], [7, 6, 4, 5]];
         let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
-        Mesh { file: String::new(), normals: vec![Vec3::Y; 8], positions, triangles, sheet: None }
+        Mesh { file: String::new(), normals: vec![Vec3::Y; 8], positions, triangles, coordinates: vec![], sheet: None }
     }
 
     #[test]

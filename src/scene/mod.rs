@@ -9,7 +9,7 @@
 //! dielectrics can be told apart.
 use std::{collections::BTreeMap, sync::Arc};
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 mod build;
 mod canonical;
@@ -18,6 +18,7 @@ mod deform;
 mod edges;
 mod error;
 mod file;
+mod flow;
 mod format;
 mod gltf;
 mod imports;
@@ -31,10 +32,13 @@ mod mesh;
 mod models;
 mod motion;
 mod motion_files;
+mod numbers;
 mod obj;
 mod object;
 mod overrides;
 mod patch;
+mod picture;
+mod schema;
 mod shape_files;
 mod sheet;
 mod sheet_files;
@@ -51,6 +55,7 @@ pub use error::{Place, SceneError};
 pub use imports::Import;
 pub use light::{Beam, Light, LightKind};
 pub use models::Models;
+pub use picture::{Picture, Texture};
 pub use sheet::Sheet;
 pub use wave::Wave;
 
@@ -207,6 +212,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Indices of the vertices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Texture coordinates, one pair a vertex, (0, 0) at a picture's lower left; none where the file has none.
+    pub coordinates: Vec<Vec2>,
     /// Of a height over a rectangle; the mesh is then an open interface, whose normal has z > 0.
     pub sheet: Option<Sheet>,
 }
@@ -227,6 +234,8 @@ pub enum MaterialKind {
     Diffuse {
         /// Share of the flux sent back, 0 to 1.
         albedo: [f64; 3],
+        /// By whose colours the albedo is multiplied.
+        texture: Option<Texture>,
     },
     /// Smooth and clear.
     Dielectric {
@@ -318,6 +327,11 @@ impl Scene {
     /// Name and title of every scene inside the program, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
+    }
+
+    /// The scene format as a JSON schema (draft 2020-12), for editors.
+    pub fn schema() -> serde_json::Value {
+        schema::schema()
     }
 
     /// The camera of that name.

@@ -6,6 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 use super::{
     LightKind, Scene, Shape,
     deform::Deformers,
+    flow::Flow,
     patch,
     track::{Direction, Track},
 };
@@ -26,6 +27,8 @@ pub struct Motion {
 pub struct ObjectMotion {
     /// As it is written.
     pub rest: Shape,
+    /// How its surface runs, before anything else.
+    pub flow: Option<Flow>,
     /// Its `center`, `base` or `vertex` as written, m.
     pub place: DVec3,
     pub position: Option<Track<DVec3>>,
@@ -72,8 +75,20 @@ impl Scene {
 
     /// Whether time changes more of an object than its place, its size and how it is turned.
     pub fn deforms(&self, object: usize) -> bool {
-        let of = |motion: &Arc<Motion>| motion.objects.iter().any(|(k, m)| *k == object && !m.deformers.is_empty());
+        let of = |motion: &Arc<Motion>| motion.objects.iter().any(|(k, m)| *k == object && m.deforms());
         self.motion.as_ref().is_some_and(of)
+    }
+
+    /// What of an object changes with time, as scene files name it.
+    pub fn object_motion(&self, object: usize) -> Vec<&'static str> {
+        let of = |motion: &Arc<Motion>| motion.objects.iter().find(|(k, _)| *k == object).map(|(_, m)| m.moves());
+        self.motion.as_ref().and_then(of).unwrap_or_default()
+    }
+
+    /// What of a light changes with time, as scene files name it.
+    pub fn light_motion(&self, light: usize) -> Vec<&'static str> {
+        let of = |motion: &Arc<Motion>| motion.lights.iter().find(|(k, _)| *k == light).map(|(_, m)| m.moves());
+        self.motion.as_ref().and_then(of).unwrap_or_default()
     }
 
     /// The first and the last time named by a key, s; none where nothing is keyed.
@@ -97,14 +112,19 @@ fn wrapped(time: f64, period: Option<f64>) -> f64 {
 }
 
 impl ObjectMotion {
+    fn deforms(&self) -> bool {
+        !self.deformers.is_empty() || self.flow.as_ref().is_some_and(Flow::deforms)
+    }
+
     fn at(&self, time: f64) -> Shape {
         let time = wrapped(time, self.period);
+        let rest = self.flow.as_ref().map_or_else(|| self.rest.clone(), |flow| flow.at(&self.rest, time));
         let turn = self.rotate.as_ref().map_or(DQuat::IDENTITY, |track| track.at(time));
         let scale = self.scale.as_ref().map_or(1.0, |track| track.at(time));
         let to = self.position.as_ref().map_or(self.place, |track| track.at(time));
         let linear = DMat3::from_quat(turn) * scale;
         let place = |p: DVec3| to + linear * (p - self.place);
-        match &self.rest {
+        match &rest {
             Shape::Sphere { center, radius } => Shape::Sphere { center: place(*center), radius: radius * scale },
             Shape::Quad { center, u, v } => Shape::Quad { center: place(*center), u: linear * *u, v: linear * *v },
             Shape::Canonical { kind, to_world } => {
@@ -119,6 +139,20 @@ impl ObjectMotion {
                 Shape::Mesh { mesh: bent.map_or_else(|| mesh.clone(), Arc::new), to_world }
             }
         }
+    }
+
+    fn moves(&self) -> Vec<&'static str> {
+        let Self { deformers: Deformers { twist, bend, wave }, .. } = self;
+        let all = [
+            ("position", self.position.is_some()),
+            ("rotate", self.rotate.is_some()),
+            ("scale", self.scale.is_some()),
+            ("twist", twist.is_some()),
+            ("bend", bend.is_some()),
+            ("wave", wave.is_some()),
+            ("speed", self.flow.is_some()),
+        ];
+        all.into_iter().filter_map(|(name, moves)| moves.then_some(name)).collect()
     }
 
     fn spans(&self) -> Vec<[f64; 2]> {
@@ -147,6 +181,16 @@ impl LightMotion {
             }
         }
         kind
+    }
+
+    fn moves(&self) -> Vec<&'static str> {
+        let power = if matches!(self.rest, LightKind::Directional { .. }) { "irradiance" } else { "intensity" };
+        let all = [
+            ("position", self.position.is_some()),
+            ("direction", self.direction.is_some()),
+            (power, self.power.is_some()),
+        ];
+        all.into_iter().filter_map(|(name, moves)| moves.then_some(name)).collect()
     }
 
     fn spans(&self) -> Vec<[f64; 2]> {

@@ -1,5 +1,6 @@
 //! Motion as it is written, and its checks.
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
@@ -7,6 +8,7 @@ use super::{
     deform::{Bend, Deformers, Twist, Wave},
     error::SceneError,
     file::{Colour, Floats, LightFile, ObjectFile},
+    flow::flow,
     locate::Key,
     motion::{LightMotion, ObjectMotion},
     shape_files,
@@ -24,62 +26,84 @@ const RATES: std::ops::RangeInclusive<f64> = -1e9..=1e9;
 /// Sine between vectors that are called parallel.
 const PARALLEL: f64 = 1e-6;
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct KeyFile<T> {
+    /// s
     time: f64,
+    /// Exact at its time.
     value: T,
 }
 
 type Keys<T> = Option<Vec<KeyFile<T>>>;
 
-#[derive(Deserialize)]
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectMotionFile {
+    /// Where its `center`, `base` or `vertex` is.
     position: Keys<Floats<3>>,
+    /// Degrees about x, then y, then z, about that place.
     rotate: Keys<Floats<3>>,
+    /// A factor above zero, about that place.
     scale: Keys<f64>,
+    /// Turns a mesh about an axis, by its length.
     twist: Option<TwistFile>,
+    /// Curves a mesh.
     bend: Option<BendFile>,
+    /// A sine that runs through a mesh.
     wave: Option<WaveFile>,
+    /// s; begins all keys again.
     period: Option<f64>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TwistFile {
+    /// Through the object's place.
     axis: Floats<3>,
     /// Degrees a length.
     angle: Vec<KeyFile<f64>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BendFile {
+    /// The line that is curved.
     along: Floats<3>,
+    /// Where it curves to.
     towards: Floats<3>,
     /// Degrees a length.
     angle: Vec<KeyFile<f64>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaveFile {
+    /// The way that it runs.
     along: Floats<3>,
+    /// The way that points move.
     towards: Floats<3>,
+    /// Keys of it.
     amplitude: Vec<KeyFile<f64>>,
+    /// In lengths of the file.
     wavelength: f64,
+    /// Lengths a second.
     #[serde(default)]
     speed: f64,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LightMotionFile {
+    /// Of a light that has a place.
     position: Keys<Floats<3>>,
+    /// Of a light that has one; it turns evenly.
     direction: Keys<Floats<3>>,
+    /// Of a directional light, W/m².
     irradiance: Keys<Colour>,
+    /// Of a point or a spot light, W/sr.
     intensity: Keys<Colour>,
+    /// s; begins all keys again.
     period: Option<f64>,
 }
 
@@ -91,11 +115,12 @@ pub fn object(
     is_receiver: bool,
     unit: f64,
 ) -> Result<Option<ObjectMotion>, SceneError> {
-    let Some(motion) = &file.motion else { return Ok(None) };
-    let key = &key.key("motion");
+    let flow = flow(key, file, unit)?;
+    let none = ObjectMotionFile::default();
+    let (key, motion) = (&key.key("motion"), file.motion.as_ref().unwrap_or(&none));
     let deformers = deformers(key, &object.shape, motion, unit)?;
     let still = motion.position.is_none() && motion.rotate.is_none() && motion.scale.is_none();
-    if still && deformers.is_empty() {
+    if still && deformers.is_empty() && flow.is_none() {
         return Ok(None);
     }
     if is_receiver {
@@ -108,6 +133,7 @@ pub fn object(
     Ok(Some(ObjectMotion {
         place: anchor(&object.shape, file, unit),
         rest: object.shape.clone(),
+        flow,
         position: track(key, "position", &motion.position, |key, value| key.point(value, unit))?,
         rotate: track(key, "rotate", &motion.rotate, shape_files::turn)?,
         scale: track(key, "scale", &motion.scale, factor)?,
@@ -136,7 +162,7 @@ fn deformers(key: &Key, shape: &Shape, file: &ObjectMotionFile, unit: f64) -> Re
         let (found, remedy) = match shape {
             Shape::Mesh { .. } => ("a height over a rectangle", "save the surface as a mesh, and use that"),
             Shape::Canonical { kind: Canonical::Sine { .. }, .. } => {
-                ("a shape that its equation makes", "a sine has its own `speed`")
+                ("a shape that its equation makes", "a sine runs by its own `speed`")
             }
             _ => ("a shape that its equation makes", "use a mesh of the shape"),
         };

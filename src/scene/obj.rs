@@ -1,10 +1,11 @@
-//! Wavefront OBJ: `v`, `vn` and `f`; every other statement is passed over.
+//! Wavefront OBJ: `v`, `vt`, `vn` and `f`; every other statement is passed over.
 //!
-//! Polygons become triangle fans; texture coordinates, groups and materials play no part. Written here because every
+//! Polygons become triangle fans; groups and materials play no part. Texture coordinates count where every corner has some;
+//! where they part, as at a seam, normals are still those of the whole surface. Written here because every
 //! fault must name its line and no input may panic.
 use std::collections::HashMap;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::{Mesh, mesh::vertex_normals};
 
@@ -17,12 +18,18 @@ pub struct ObjFault {
     pub remedy: &'static str,
 }
 
-/// Indices of a face's corner: position, and normal if it has one.
-type Corner = (usize, Option<usize>);
+/// Indices of a face's corner: position, and texture coordinates and normal if it has them.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Corner {
+    position: usize,
+    coordinates: Option<usize>,
+    normal: Option<usize>,
+}
 
 #[derive(Default)]
 struct Statements {
     positions: Vec<Vec3>,
+    coordinates: Vec<Vec2>,
     normals: Vec<Vec3>,
     /// Line, and corners as written: counted from 1, or backwards from what stood before.
     faces: Vec<(usize, Vec<Corner>)>,
@@ -45,6 +52,7 @@ impl Statements {
             let mut words = statement.split('#').next().unwrap_or_default().split_whitespace();
             match words.next() {
                 Some("v") => all.positions.push(triple(line, words)?),
+                Some("vt") => all.coordinates.push(pair(line, words)?),
                 Some("vn") => all.normals.push(normal(line, words)?),
                 Some("f") => {
                     let face = all.face(line, words)?;
@@ -60,8 +68,11 @@ impl Statements {
         let corner = |word: &str| {
             let mut parts = word.split('/');
             let position = index(parts.next()?, self.positions.len())?;
-            let normal = parts.nth(1).filter(|part| !part.is_empty()).map(|part| index(part, self.normals.len()));
-            Some((position, normal.map_or(Some(None), |n| n.map(Some))?))
+            let mut next = |count: usize| {
+                let part = parts.next().filter(|part| !part.is_empty());
+                part.map_or(Some(None), |part| index(part, count).map(Some))
+            };
+            Some(Corner { position, coordinates: next(self.coordinates.len())?, normal: next(self.normals.len())? })
         };
         let wrong = |word: &str| ObjFault {
             line,
@@ -79,29 +90,62 @@ impl Statements {
     }
 
     fn into_mesh(self, file: &str) -> Result<Mesh, ObjFault> {
-        let own_normals = self.faces.iter().flat_map(|(_, face)| face).all(|corner| corner.1.is_some());
-        let mut mesh =
-            Mesh { file: file.to_owned(), positions: vec![], normals: vec![], triangles: vec![], sheet: None };
+        let mut corners = self.faces.iter().flat_map(|(_, face)| face);
+        let own_normals = corners.clone().all(|corner| corner.normal.is_some());
+        let placed = corners.all(|corner| corner.coordinates.is_some());
+        let mut mesh = Mesh {
+            file: file.to_owned(),
+            positions: vec![],
+            normals: vec![],
+            triangles: vec![],
+            coordinates: vec![],
+            sheet: None,
+        };
+        let made = if own_normals { vec![] } else { self.normals_of_positions()? };
         let mut vertices = HashMap::new();
         for (line, face) in &self.faces {
-            let mut vertex = |&(position, normal): &Corner| {
-                let key = (position, normal.filter(|_| own_normals));
-                let at = *self.positions.get(position).ok_or_else(|| beyond(*line, "vertex", position))?;
-                let along = key.1.map(|n| self.normals.get(n).ok_or_else(|| beyond(*line, "normal", n))).transpose()?;
+            let mut vertex = |corner: &Corner| {
+                let key = Corner {
+                    coordinates: corner.coordinates.filter(|_| placed),
+                    normal: corner.normal.filter(|_| own_normals),
+                    ..*corner
+                };
+                let at = *self.positions.get(key.position).ok_or_else(|| beyond(*line, "vertex", key.position))?;
+                let along = match key.normal {
+                    Some(n) => *self.normals.get(n).ok_or_else(|| beyond(*line, "normal", n))?,
+                    None => made.get(key.position).copied().unwrap_or(Vec3::Y),
+                };
+                let missing = |t| beyond(*line, "texture coordinates", t);
+                let place = key.coordinates.map(|t| self.coordinates.get(t).ok_or_else(|| missing(t))).transpose()?;
                 Ok(*vertices.entry(key).or_insert_with(|| {
                     mesh.positions.push(at);
-                    mesh.normals.extend(along);
+                    mesh.normals.push(along);
+                    mesh.coordinates.extend(place);
                     (mesh.positions.len() - 1) as u32
                 }))
             };
             let corners: Vec<u32> = face.iter().map(&mut vertex).collect::<Result<_, _>>()?;
-            mesh.triangles.extend(corners[1..].windows(2).map(|edge| [corners[0], edge[0], edge[1]]));
-        }
-        if !own_normals {
-            mesh.normals = vertex_normals(&mesh.positions, &mesh.triangles);
+            mesh.triangles.extend(fan(&corners));
         }
         Ok(mesh)
     }
+
+    /// One for each position, over all triangles that meet there, whatever their texture coordinates.
+    fn normals_of_positions(&self) -> Result<Vec<Vec3>, ObjFault> {
+        let mut triangles = vec![];
+        for (line, face) in &self.faces {
+            if let Some(corner) = face.iter().find(|corner| corner.position >= self.positions.len()) {
+                return Err(beyond(*line, "vertex", corner.position));
+            }
+            triangles.extend(fan(&face.iter().map(|corner| corner.position as u32).collect::<Vec<_>>()));
+        }
+        Ok(vertex_normals(&self.positions, &triangles))
+    }
+}
+
+/// A polygon's triangles.
+fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    corners[1..].windows(2).map(|edge| [corners[0], edge[0], edge[1]])
 }
 
 /// Zero-based index of what is written from 1 on, or from -1 back.
@@ -115,23 +159,31 @@ fn index(word: &str, count: usize) -> Option<usize> {
 
 fn beyond(line: usize, what: &str, index: usize) -> ObjFault {
     let found = format!("{what} {}", index + 1);
-    ObjFault { line, expected: "indices of vertices and normals that the file holds", found, remedy: "export it again" }
+    ObjFault { line, expected: "indices of what the file holds", found, remedy: "export it again" }
 }
 
 fn triple<'t>(line: usize, words: impl Iterator<Item = &'t str>) -> Result<Vec3, ObjFault> {
-    let fault = |found: String| ObjFault {
-        line,
-        expected: "three finite numbers",
-        found,
-        remedy: "repair the line, or export the mesh again",
-    };
-    let mut values = [0.0_f32; 3];
-    let mut words = words;
+    numbers(line, words, "three finite numbers").map(Vec3::from_array)
+}
+
+/// A third, of pictures in depth, is passed over.
+fn pair<'t>(line: usize, words: impl Iterator<Item = &'t str>) -> Result<Vec2, ObjFault> {
+    numbers(line, words, "two finite numbers").map(Vec2::from_array)
+}
+
+fn numbers<'t, const N: usize>(
+    line: usize,
+    mut words: impl Iterator<Item = &'t str>,
+    expected: &'static str,
+) -> Result<[f32; N], ObjFault> {
+    let remedy = "repair the line, or export the mesh again";
+    let fault = |found: String| ObjFault { line, expected, found, remedy };
+    let mut values = [0.0_f32; N];
     for value in &mut values {
         let word = words.next().ok_or_else(|| fault("fewer".to_owned()))?;
         *value = word.parse().ok().filter(|x: &f32| x.is_finite()).ok_or_else(|| fault(format!("{word:?}")))?;
     }
-    Ok(Vec3::from_array(values))
+    Ok(values)
 }
 
 fn normal<'t>(line: usize, words: impl Iterator<Item = &'t str>) -> Result<Vec3, ObjFault> {

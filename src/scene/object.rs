@@ -11,7 +11,8 @@ use super::{
     imports::Told,
     load::Files,
     locate::Key,
-    models, obj, shape_files, sheet_files,
+    models, obj, picture, shape_files,
+    sheet_files::{self, WaveSheet},
 };
 
 /// Cosine between a quad's edges that passes for a right angle: the rounding of decimal numbers in a file.
@@ -31,6 +32,7 @@ pub fn object(
     let material = key.key("material").resolve("a material", &file.material, names)?;
     let shape = shape(key, file, unit, meshes)?;
     shape_files::refuse_open_shell(key, &shape, &materials[material])?;
+    picture::refuse_no_coordinates(key, &shape, &materials[material])?;
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
 }
 
@@ -49,7 +51,7 @@ fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result
         file.paraboloid.as_ref().map(|written| shape_files::paraboloid(&key.key("paraboloid"), written, unit)),
         file.sine.as_ref().map(|written| sine(&key.key("sine"), written, unit)),
         file.heights.as_ref().map(|written| heights(&key.key("heights"), written, unit, meshes)),
-        file.wave.as_ref().map(|written| wave(&key.key("wave"), written, unit)),
+        file.wave.as_ref().map(|written| Ok(wave(&key.key("wave"), written, unit)?.at(0.0))),
         file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, meshes)),
     ];
     let mut given = kinds.into_iter().flatten();
@@ -80,7 +82,7 @@ fn heights(key: &Key, file: &HeightsFile, unit: f64, meshes: &mut Meshes) -> Res
     sheet_files::heights(key, file, &bytes, sides, unit)
 }
 
-fn wave(key: &Key, file: &WaveFile, unit: f64) -> Result<Shape, SceneError> {
+pub fn wave(key: &Key, file: &WaveFile, unit: f64) -> Result<WaveSheet, SceneError> {
     let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
     sheet_files::wave(key, file, sides, unit)
 }
@@ -185,7 +187,7 @@ impl<'a> Meshes<'a> {
     }
 
     /// Of a file beside the scene, which are of the scene from now on.
-    fn bytes(&mut self, key: &Key, file: &str, expected: &str, remedy: &str) -> Result<Vec<u8>, SceneError> {
+    pub fn bytes(&mut self, key: &Key, file: &str, expected: &str, remedy: &str) -> Result<Vec<u8>, SceneError> {
         let unreadable = |why: String| key.fault(expected, format!("{file}: {why}"), remedy);
         let bytes = self.files.read(file).map_err(unreadable)?;
         self.hasher.update(&bytes);

@@ -82,7 +82,7 @@ pub fn sine(key: &Key, file: &SineFile, [center, u, v]: [DVec3; 3], unit: f64) -
     let wavelength = key.key("wavelength").size(file.wavelength, unit)?;
     let waves = key.key("wavelength").number(u.length() / wavelength, WAVES, "waves along u", "make them longer")?;
     let linear = DMat3::from_cols(u, v, u.cross(v).normalize() * amplitude);
-    Ok(placed(Canonical::Sine { wave: std::f64::consts::TAU * waves }, linear, center))
+    Ok(placed(Canonical::Sine { wave: std::f64::consts::TAU * waves, phase: 0.0 }, linear, center))
 }
 
 /// The direction of the part's middle, across the axis.

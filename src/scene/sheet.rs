@@ -30,11 +30,13 @@ pub fn sheet(sheet: Sheet, file: String, [center, u, v]: [DVec3; 3], surface: &S
     let [across, along] = sheet.cells;
     let count = (across + 1) * (along + 1);
     let (mut positions, mut normals) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut coordinates = Vec::with_capacity(count);
     for row in 0..=along {
         for column in 0..=across {
             let at = DVec2::new(column as f64 / across as f64, row as f64 / along as f64) * 2.0 - 1.0;
             let (height, slope) = surface(at);
             positions.push((at * half).extend(height / unit).as_vec3());
+            coordinates.push((0.5 + 0.5 * at).as_vec2());
             normals.push((-slope).extend(1.0).normalize().as_vec3());
         }
     }
@@ -44,7 +46,7 @@ pub fn sheet(sheet: Sheet, file: String, [center, u, v]: [DVec3; 3], surface: &S
         [[a, a + 1, d + 1], [a, d + 1, d]]
     };
     let triangles = (0..across * along).flat_map(cell).collect();
-    let mesh = Mesh { file, positions, normals, triangles, sheet: Some(sheet) };
+    let mesh = Mesh { file, positions, normals, triangles, coordinates, sheet: Some(sheet) };
     let axes = DMat3::from_cols(u.normalize(), v.normalize(), u.cross(v).normalize()) * unit;
     Shape::Mesh { mesh: Arc::new(mesh), to_world: DAffine3::from_mat3_translation(axes, center) }
 }

@@ -91,8 +91,40 @@ impl Field<'_> {
     }
 }
 
-/// The wave function over a rectangle, at one time.
-pub fn wave(key: &Key, file: &WaveFile, sides: [DVec3; 3], unit: f64) -> Result<Shape, SceneError> {
+/// The wave function over a rectangle, at any time.
+#[derive(Clone, Debug)]
+pub struct WaveSheet {
+    wave: Wave,
+    /// s, at the scene's time 0.
+    time: f64,
+    /// Of one unit of the wave, m.
+    length: f64,
+    /// The wave's coordinates at the centre.
+    middle: DVec2,
+    sides: [DVec3; 3],
+    cells: [usize; 2],
+}
+
+impl WaveSheet {
+    /// rad/s
+    pub fn speed(&self) -> f64 {
+        self.wave.speed
+    }
+
+    /// At a time of the scene, s.
+    pub fn at(&self, time: f64) -> Shape {
+        let Self { wave, length, middle, sides, .. } = *self;
+        let time = self.time + time;
+        let [_, u, v] = sides;
+        let size = DVec2::new(u.length(), v.length());
+        let place = |at: DVec2| middle + at * size / length;
+        let surface = |at: DVec2| (length * wave.height(place(at), time), wave.gradient(place(at), time));
+        sheet(Sheet { kind: "wave", cells: self.cells }, String::new(), sides, &surface)
+    }
+}
+
+/// The wave function over a rectangle.
+pub fn wave(key: &Key, file: &WaveFile, sides: [DVec3; 3], unit: f64) -> Result<WaveSheet, SceneError> {
     let constant = |name: &str, given: Option<f64>, paper: f64| {
         key.key(name).number(
             given.unwrap_or(paper),
@@ -128,10 +160,8 @@ pub fn wave(key: &Key, file: &WaveFile, sides: [DVec3; 3], unit: f64) -> Result<
     // The factors sum to less than twice the first.
     let highest = 4.0 * length * wave.vertex_size * wave.factor * reach.length();
     key.key("vertex_size").number(highest, 0.0..=LARGEST, "heights in metres", "make it smaller")?;
-    let place = |at: DVec2| middle + at * size / length;
-    let surface = |at: DVec2| (length * wave.height(place(at), time), wave.gradient(place(at), time));
     let cells = cells(&key.key("grid"), file.grid.unwrap_or(WAVE_CELLS), sides)?;
-    Ok(sheet(Sheet { kind: "wave", cells }, String::new(), sides, &surface))
+    Ok(WaveSheet { wave, time, length, middle, sides, cells })
 }
 
 /// As many along the longer side, and along the other what makes them square.

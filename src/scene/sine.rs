@@ -1,4 +1,4 @@
-//! Where rays meet z = sin(wave x): exact, since the places where a ray's height over the sheet turns are known.
+//! Where rays meet z = sin(wave x + phase): exact, since the places where a ray's height over the sheet turns are known.
 
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -15,21 +15,26 @@ struct Height {
     o: DVec3,
     d: DVec3,
     wave: f64,
+    phase: f64,
 }
 
 impl Height {
+    fn angle(&self, t: f64) -> f64 {
+        self.wave * (self.o.x + t * self.d.x) + self.phase
+    }
+
     fn at(&self, t: f64) -> f64 {
-        self.o.z + t * self.d.z - (self.wave * (self.o.x + t * self.d.x)).sin()
+        self.o.z + t * self.d.z - self.angle(t).sin()
     }
 
     fn slope(&self, t: f64) -> f64 {
-        self.d.z - self.wave * self.d.x * (self.wave * (self.o.x + t * self.d.x)).cos()
+        self.d.z - self.wave * self.d.x * self.angle(t).cos()
     }
 
-    /// Where it turns between `from` and `to`, in order: cos(wave x) is the quotient of the two slopes there.
+    /// Where it turns between `from` and `to`, in order: cos(wave x + phase) is the quotient of the two slopes there.
     fn turns(&self, from: f64, to: f64) -> impl Iterator<Item = f64> {
         let pace = self.wave * self.d.x.abs();
-        let phase = self.wave * self.o.x * self.d.x.signum();
+        let phase = self.angle(0.0) * self.d.x.signum();
         let angle = (self.d.z / (self.wave * self.d.x)).acos();
         let first = ((phase + pace * from + angle) / TAU).floor();
         let at = move |k: usize| {
@@ -64,14 +69,14 @@ impl Height {
 
 /// As [`Canonical::meet`](super::Canonical::meet). Between two turns there is one crossing at most; where a ray starts on
 /// the sheet it is the start.
-pub fn meet(wave: f64, o: DVec3, d: DVec3, near: f64, starts_here: bool) -> Option<f64> {
+pub fn meet([wave, phase]: [f64; 2], o: DVec3, d: DVec3, near: f64, starts_here: bool) -> Option<f64> {
     let shrink = DVec3::new(1.0, 1.0, 1.0 / (1.0 + ROOM));
     let [enter, leave] = slabs(o * shrink, d * shrink);
     let start = if starts_here { 0.0 } else { enter.max(near) };
     if !(start < leave && leave.is_finite()) {
         return None;
     }
-    let height = Height { o, d, wave };
+    let height = Height { o, d, wave, phase };
     let ends = height.turns(start, leave).chain([leave]);
     let mut from = start;
     for (k, to) in ends.enumerate() {

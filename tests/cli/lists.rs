@@ -89,3 +89,10 @@ fn help_and_version_are_no_errors() {
         assert!(nephroid(arguments).ok().out.contains(wanted), "{arguments}");
     }
 }
+
+#[test]
+fn the_schema_is_printed_for_editors() {
+    let schema = nephroid("schema").ok().json();
+    assert_eq!(schema, nephroid::scene::Scene::schema());
+    assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+}

@@ -89,3 +89,18 @@ fn a_scene_that_stands_still_has_times_too() {
     let ran = nephroid("render glass-sphere --sequence 0..1@1 --repeat 3 --out never");
     assert!(ran.code == Some(2) && ran.err.contains("--repeat"), "{}", ran.err);
 }
+
+#[test]
+fn where_nothing_moves_it_is_said() {
+    let still = FRAMES.replace("moving-sphere", "glass-sphere");
+    for (time, words) in [("--sequence 0..1@2", "all frames are one picture"), ("--time 2", "at 2 s what it is at 0")] {
+        let (_folder, out) = place();
+        let ran = nephroid(&format!("{still} {time} --out {}", out.display())).ok();
+        assert!(ran.err.contains("warning: nothing in glass-sphere moves") && ran.err.contains(words), "{}", ran.err);
+        let (_folder, out) = place();
+        let moving = nephroid(&format!("{FRAMES} {time} --out {}", out.display())).ok();
+        assert!(!moving.err.contains("nothing in"), "{}", moving.err);
+    }
+    let [still, moving] = ["glass-sphere", "moving-sphere"].map(|name| nephroid(&format!("scenes {name}")).ok().out);
+    assert!(still.contains("stands still") && moving.contains("moves, keys from -0.3 to 0.9 s"), "{still}{moving}");
+}

@@ -2,8 +2,8 @@
 use glam::{DMat3, DVec3, Vec3A};
 use nephroid::{
     passes::accel::{
-        Instance, Node, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD, SHAPE_SINE,
-        SHAPE_SPHERE, SceneArrays,
+        GRID_ENTRIES, Instance, Node, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_MESH, SHAPE_PARABOLOID, SHAPE_QUAD,
+        SHAPE_SINE, SHAPE_SPHERE, SceneArrays,
     },
     scene::Canonical,
 };
@@ -31,11 +31,17 @@ pub struct CpuScene<'a> {
     meshes: std::collections::BTreeMap<u32, Bvh2>,
 }
 
-/// obvhs wants its root at 0: the nodes from `root` on, their children moved down.
-fn bvh(nodes: &[Node], root: u32) -> Bvh2 {
+/// obvhs wants its root at 0: the nodes of a tree and all after it, their children moved down.
+fn bvh(nodes: &[Node], tree: u32) -> Bvh2 {
+    let root = tree + GRID_ENTRIES;
+    let [origin, cell] = [0, 1].map(|k| nodes[tree as usize + k].corners.map(f32::from_bits));
     let node = |n: &Node| {
-        let first = if n.count == 0 { n.first.wrapping_sub(root) } else { n.first };
-        Bvh2Node::new(obvhs::aabb::Aabb::new(n.lo.into(), n.hi.into()), n.count, first)
+        let first = if n.count() == 0 { n.first().wrapping_sub(root) } else { n.first() };
+        let corner = |cells: fn(u32) -> u32| {
+            Vec3A::from_array(std::array::from_fn(|k| origin[k] + cell[k] * cells(n.corners[k]) as f32))
+        };
+        let around = obvhs::aabb::Aabb::new(corner(|c| c & 0xffff), corner(|c| c >> 16));
+        Bvh2Node::new(around, n.count(), first)
     };
     Bvh2 { nodes: nodes[root as usize..].iter().map(node).collect(), ..Default::default() }
 }
@@ -110,7 +116,7 @@ pub fn canonical_of(instance: &Instance) -> Canonical {
         SHAPE_DISK => Canonical::Disk,
         SHAPE_CYLINDER => Canonical::Cylinder { cut },
         SHAPE_PARABOLOID => Canonical::Paraboloid { cut },
-        SHAPE_SINE => Canonical::Sine { wave: cut },
+        SHAPE_SINE => Canonical::Sine { wave: cut, phase: f64::from(instance.phase) },
         kind => panic!("kind {kind} is no canonical shape"),
     }
 }

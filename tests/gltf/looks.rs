@@ -26,7 +26,7 @@ fn materials_become_ours_and_what_they_lose_is_told() {
         clear(json!({ "KHR_materials_volume": volume }))
     };
     let glass = |absorption| MaterialKind::Dielectric { ior: [1.5; 3], absorption };
-    let diffuse = |albedo| MaterialKind::Diffuse { albedo };
+    let diffuse = |albedo| MaterialKind::Diffuse { albedo, texture: None };
     let ln2 = std::f64::consts::LN_2;
     let cases: Vec<(Value, MaterialKind, &[&str])> = vec![
         (json!({}), diffuse([1.0; 3]), &["being a rough metal (roughness 1)"]),
@@ -127,7 +127,7 @@ fn materials_are_replaced_by_the_scenes_own() {
     let mut bare = small();
     bare.json["meshes"][0]["primitives"][0].as_object_mut().unwrap().remove("material");
     let scene = imported("room.glb", bare.glb(), "").unwrap();
-    assert_eq!(material(&scene, "room/default"), &MaterialKind::Diffuse { albedo: [1.0; 3] });
+    assert_eq!(material(&scene, "room/default"), &MaterialKind::Diffuse { albedo: [1.0; 3], texture: None });
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     let scene = imported("room.glb", bare.glb(), "materials = { default = \"white\" }\n").unwrap();
     assert_eq!(scene.materials[object(&scene, "room/Stone").material].name, "white");

@@ -130,8 +130,14 @@ fn a_million_triangles_are_a_sphere() {
         .collect();
     assert!(triangles.len() > 1_000_000);
     let mut scene = scene("glass-sphere", &[]);
-    let mesh =
-        Arc::new(Mesh { file: "sphere".to_owned(), normals: positions.clone(), positions, triangles, sheet: None });
+    let mesh = Arc::new(Mesh {
+        file: "sphere".to_owned(),
+        normals: positions.clone(),
+        positions,
+        triangles,
+        coordinates: vec![],
+        sheet: None,
+    });
     let ball = scene.objects.iter_mut().find(|o| o.name == "ball").unwrap();
     ball.shape = Shape::Mesh { mesh: mesh.clone(), to_world: DAffine3::IDENTITY };
     let start = Instant::now();

@@ -85,7 +85,7 @@ fn black_and_white_floors_send_back_nothing_and_all() {
     let of = |albedo: f64| {
         let mut scene = scene("glass-sphere", &[]);
         let white = scene.materials.iter_mut().find(|m| !m.is_specular()).unwrap();
-        white.kind = MaterialKind::Diffuse { albedo: [albedo; 3] };
+        white.kind = MaterialKind::Diffuse { albedo: [albedo; 3], texture: None };
         region(&gpu, scene)
     };
     let black = of(0.0);

@@ -15,6 +15,7 @@ const CUT: f64 = 0.25;
 
 /// Radians of the sine from its middle to its side.
 const WAVE: f64 = 9.0;
+const PHASE: f64 = 0.7;
 
 /// o, d
 type Row = [f32; 6];
@@ -71,7 +72,7 @@ fn bowl(o: DVec3, d: DVec3) -> (Vec<Crossing>, f64) {
 /// the steepest place.
 fn wave(o: DVec3, d: DVec3) -> (Vec<Crossing>, f64) {
     const STEPS: usize = 2000;
-    let height = |t: f64| o.z + d.z * t - (WAVE * (o.x + d.x * t)).sin();
+    let height = |t: f64| o.z + d.z * t - (WAVE * (o.x + d.x * t) + PHASE).sin();
     let [mut from, mut to] = [f64::NEG_INFINITY, f64::INFINITY];
     for (axis, reach) in [1.3, 1.3, 1.01].into_iter().enumerate().filter(|(axis, _)| d[*axis] != 0.0) {
         let [a, b] = [-reach, reach].map(|side| (side - o[axis]) / d[axis]);
@@ -89,7 +90,7 @@ fn wave(o: DVec3, d: DVec3) -> (Vec<Crossing>, f64) {
             let middle = 0.5 * (low + high);
             if (height(middle) < 0.0) == (heights[k] < 0.0) { low = middle } else { high = middle }
         }
-        let slope = WAVE * (WAVE * (o.x + d.x * low)).cos();
+        let slope = WAVE * (WAVE * (o.x + d.x * low) + PHASE).cos();
         all.push((low, DVec3::new(-slope, 0.0, 1.0).normalize()));
     }
     let turn = |w: &[f64]| w[1] - (w[2] - w[0]).powi(2) / (8.0 * (w[0] - 2.0 * w[1] + w[2]));
@@ -143,12 +144,12 @@ const CASES: [Case; 5] = [
     },
     Case {
         name: "sine",
-        hit: "hit_sine(ray, 9.0, NO_HIT, uv)",
-        place: "vec3(uv, sin(9.0 * uv.x))",
+        hit: "hit_sine(ray, vec2(9.0, 0.7), NO_HIT, uv)",
+        place: "vec3(uv, sin(9.0 * uv.x + 0.7))",
         crossings: wave,
         across: |d| d.x.abs(),
         inside: |p| rest(p, 2),
-        on: |u, v| DVec3::new(u, v, (WAVE * u).sin()),
+        on: |u, v| DVec3::new(u, v, (WAVE * u + PHASE).sin()),
     },
 ];
 

@@ -5,9 +5,12 @@ use nephroid::scene::{Scene, SceneError};
 use tempfile::TempDir;
 
 mod malformed;
+mod motion;
+mod schema;
 mod shapes;
 mod sheets;
 mod sound;
+mod textures;
 
 /// A scene with every kind of thing but a mesh; the tests below change it line by line.
 const BASE: &str = include_str!("base.toml");

@@ -52,7 +52,7 @@ fn shapes_land_where_the_file_puts_them() {
     assert_eq!(kind, Canonical::Paraboloid { cut: 0.2 });
     close(at([1.0, 0.0, 1.0]), dvec3(1.0, 0.5, 0.0));
     let (kind, at) = canonical(&with(SINE));
-    assert_eq!(kind, Canonical::Sine { wave: 4.0 * std::f64::consts::TAU });
+    assert_eq!(kind, Canonical::Sine { wave: 4.0 * std::f64::consts::TAU, phase: 0.0 });
     close(at([1.0, 1.0, 1.0]), dvec3(2.0, 1.1, -3.0));
     let whole = CYLINDER.replace("arc = 180\nmiddle = [3, 1, 0]", "");
     assert_eq!(canonical(&with(&whole)).0, Canonical::Cylinder { cut: WHOLE });

@@ -23,7 +23,7 @@ fn with(sheet: &str) -> String {
     BASE.replace("[objects.ball.sphere]\ncenter = [0, 0, 0]\nradius = 1\n", sheet)
 }
 
-fn png(size: [u32; 2], color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
+pub fn png(size: [u32; 2], color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, size[0], size[1]);
     encoder.set_color(color);
@@ -39,7 +39,7 @@ fn grey(size: [u32; 2]) -> Vec<u8> {
     png(size, ColorType::Grayscale, BitDepth::Sixteen, &vec![0x80; 2 * count as usize])
 }
 
-fn exr(layers: &[(&str, usize, Vec<f32>)]) -> Vec<u8> {
+pub fn exr(layers: &[(&str, usize, Vec<f32>)]) -> Vec<u8> {
     let (_, channels, first) = &layers[0];
     let mut image = Layers::new(first.len() / channels, 1);
     layers.iter().for_each(|(name, channels, data)| image.push(name, *channels, data.clone()).unwrap());

@@ -1,18 +1,31 @@
 //! The structs of `glsl/shared/scene.glsl`, field by field, in scalar layout.
 use bytemuck::{Pod, Zeroable};
 
-/// A node of a binary tree: `count` 0 for an inner node with children `first` and `first + 1`, else a leaf.
+/// A node of a binary tree, or, in the first two of a tree, its grid: origin and cell as the bits of float32.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Node {
-    /// Least corner of the box.
-    pub lo: [f32; 3],
+    /// Of the box, along x, y and z: the least corner in the low half, the greatest in the high half, in cells of the grid.
+    pub corners: [u32; 3],
+    /// Primitives of a leaf in the upper four bits, 0 for an inner node; below, the first of them or the first child.
+    pub reference: u32,
+}
+
+/// Entries of a tree before its root.
+pub const GRID_ENTRIES: u32 = 2;
+/// Bits of a node's reference that hold an index.
+pub const INDEX_BITS: u32 = 28;
+
+impl Node {
     /// Primitives of a leaf; 0 for an inner node.
-    pub count: u32,
-    /// Greatest corner of the box.
-    pub hi: [f32; 3],
+    pub fn count(&self) -> u32 {
+        self.reference >> INDEX_BITS
+    }
+
     /// First child, or first primitive.
-    pub first: u32,
+    pub fn first(&self) -> u32 {
+        self.reference & ((1 << INDEX_BITS) - 1)
+    }
 }
 
 /// Corners in object units, or their normals.
@@ -44,8 +57,10 @@ pub struct Instance {
     pub material: u32,
     /// Index in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
-    /// Of a mesh, its root in the nodes; of a cylinder or paraboloid its cut, of a sine its wave, as the bits of a float32.
+    /// Of a mesh, where its tree begins in the nodes; of a cylinder or paraboloid its cut, of a sine its wave, as the bits of a float32.
     pub detail: u32,
+    /// Of a sine, radians.
+    pub phase: f32,
 }
 
 /// Of one object or more; a medium's identity is its index.
@@ -60,6 +75,32 @@ pub struct Material {
     pub colour: [f32; 3],
     /// 1/m
     pub absorption: [f32; 3],
+    /// 1 + index of its texture; 0 for none.
+    pub texture: u32,
+}
+
+/// A picture among the texels of all.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Texture {
+    /// First of its texels, rows from the top.
+    pub first: u32,
+    /// Pixels.
+    pub size: [u32; 2],
+    /// How often it is within 0 to 1.
+    pub repeat: [f32; 2],
+}
+
+/// Texture coordinates at the corners of a triangle.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct TriangleCoordinates {
+    /// First corner.
+    pub a: [f32; 2],
+    /// Second corner.
+    pub b: [f32; 2],
+    /// Third corner.
+    pub c: [f32; 2],
 }
 
 /// What shines.
@@ -108,7 +149,7 @@ pub const SHAPE_DISK: u32 = 4;
 pub const SHAPE_CYLINDER: u32 = 5;
 /// z = x² + y², up to 1, x from the cut on.
 pub const SHAPE_PARABOLOID: u32 = 6;
-/// z = sin(wave x) over [-1, 1]².
+/// z = sin(wave x + phase) over [-1, 1]².
 pub const SHAPE_SINE: u32 = 7;
 
 /// A receiver.

@@ -6,11 +6,12 @@ use glam::Vec3;
 use obvhs::aabb::Aabb;
 
 use super::{
-    AccelError, LARGEST_INDEX, Node, TOP_LEVELS, TRAVERSAL_STACK, Triangle, TriangleNormals, check_count,
+    AccelError, GRID_ENTRIES, LARGEST_INDEX, Node, TOP_LEVELS, TRAVERSAL_STACK, Textures, Triangle,
+    TriangleCoordinates, TriangleNormals, check_count,
     tree::{Tree, most_nodes},
     vector,
 };
-use crate::scene::Mesh;
+use crate::scene::{Mesh, Scene};
 
 /// A refitted tree is built again once a ray is expected to cost this many times what it did when the tree was built: a
 /// third more boxes and triangles. The knot of `bending` (5,760 triangles) is laid out in 1.0 ms with its tree refitted and
@@ -24,6 +25,8 @@ pub struct Trees {
     rigid: HashMap<*const Mesh, (Arc<Mesh>, Arc<MeshTree>)>,
     /// Of meshes that are deformed, by object.
     bent: HashMap<usize, Arc<MeshTree>>,
+    /// Time does not change them.
+    textures: Option<Arc<Textures>>,
     /// How often a tree was refitted, and how often built for want of quality.
     pub refitted: u64,
     /// As above.
@@ -41,6 +44,13 @@ pub struct MeshTree {
 }
 
 impl Trees {
+    /// Those of the scene, made at their first use.
+    pub(super) fn textures(&mut self, scene: &Scene) -> Result<Arc<Textures>, AccelError> {
+        let made = self.textures.take().map_or_else(|| Textures::of(scene).map(Arc::new), Ok)?;
+        self.textures = Some(made.clone());
+        Ok(made)
+    }
+
     /// The tree of a mesh that has at least one triangle; of one that its object deforms, fitted to it as it is now.
     fn of(&mut self, name: &str, mesh: &Arc<Mesh>, deformed: Option<usize>) -> Result<Arc<MeshTree>, AccelError> {
         let Some(object) = deformed else {
@@ -99,12 +109,16 @@ pub struct Meshes {
     nodes: u32,
     pub triangles: Vec<Triangle>,
     pub normals: Vec<TriangleNormals>,
+    /// Whether texture coordinates are asked for.
+    placed: bool,
+    /// If they are, one for each triangle; zeros for a mesh that has none.
+    pub coordinates: Vec<TriangleCoordinates>,
 }
 
 /// A mesh among others.
 pub struct PlacedMesh {
     mesh: Arc<MeshTree>,
-    /// Counted from the first node of the first mesh.
+    /// Where its tree begins, counted from that of the first mesh.
     pub root: u32,
     /// First of its triangles.
     triangle: u32,
@@ -113,6 +127,11 @@ pub struct PlacedMesh {
 }
 
 impl Meshes {
+    /// None yet; `placed` asks for texture coordinates.
+    pub fn new(placed: bool) -> Self {
+        Self { placed, ..Self::default() }
+    }
+
     /// Index of the mesh; it has at least one triangle.
     pub fn add(
         &mut self,
@@ -129,7 +148,10 @@ impl Meshes {
         let triangle = self.triangles.len() as u32;
         self.triangles.extend(&tree.triangles);
         self.normals.extend(&tree.normals);
-        let room = deformed.map_or(tree.tree.nodes.len(), |_| most_nodes(mesh.triangles.len()));
+        if self.placed {
+            self.coordinates.extend(tree.tree.order.iter().map(|&t| corner_coordinates(mesh, t as usize)));
+        }
+        let room = deformed.map_or(tree.tree.entries(), |_| GRID_ENTRIES as usize + most_nodes(mesh.triangles.len()));
         self.all.push(PlacedMesh { mesh: tree, root: self.nodes, triangle, room });
         self.nodes += room as u32;
         if deformed.is_none() {
@@ -141,8 +163,8 @@ impl Meshes {
     /// All nodes, moved behind `base` others; a mesh that is deformed has room for a tree of any shape.
     pub fn nodes(&self, base: u32) -> impl Iterator<Item = Node> {
         self.all.iter().flat_map(move |placed| {
-            let moved = placed.mesh.tree.moved(base + placed.root, placed.triangle);
-            moved.chain(std::iter::repeat(Node::default())).take(placed.room)
+            let packed = placed.mesh.tree.packed(base + placed.root, placed.triangle);
+            packed.chain(std::iter::repeat(Node::default())).take(placed.room)
         })
     }
 }
@@ -162,6 +184,11 @@ fn triangle(name: &str, mesh: &Mesh, index: usize) -> Result<Triangle, AccelErro
         vector(name, "a vertex", position.as_dvec3())
     };
     Ok(Triangle { a: corner(0)?, b: corner(1)?, c: corner(2)? })
+}
+
+fn corner_coordinates(mesh: &Mesh, index: usize) -> TriangleCoordinates {
+    let at = |k: usize| mesh.coordinates.get(mesh.triangles[index][k] as usize).copied().unwrap_or_default().to_array();
+    TriangleCoordinates { a: at(0), b: at(1), c: at(2) }
 }
 
 /// A vertex without a normal gets zero, which the shaders answer with the geometric normal.

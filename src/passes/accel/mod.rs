@@ -11,17 +11,20 @@ use obvhs::aabb::Aabb;
 use crate::scene::{Canonical, LightKind, Material as SceneMaterial, MaterialKind, Mesh, Object, Scene, Shape};
 
 mod error;
+mod grid;
 mod layout;
 mod meshes;
 #[cfg(test)]
 mod tests;
+mod textures;
 mod tree;
 
 pub use error::AccelError;
 pub use layout::*;
 use meshes::Meshes;
 pub use meshes::{Trees, WORN};
-use tree::{Tree, roomy_box};
+pub use textures::Textures;
+use tree::{Branch, Tree, roomy_box};
 
 /// Levels of both trees together that the shaders' stack holds (`TRAVERSAL_STACK` in `bvh.glsl`).
 pub const TRAVERSAL_STACK: usize = 64;
@@ -29,26 +32,30 @@ pub const TRAVERSAL_STACK: usize = 64;
 const TOP_LEVELS: usize = 24;
 /// A balanced tree over as many instances needs no more levels than that.
 const MOST_INSTANCES: usize = 1 << (TOP_LEVELS - 1);
-/// Node references keep 28 bits for an index (`node_reference` in `bvh.glsl`).
-const LARGEST_INDEX: usize = (1 << 28) - 1;
+/// As far as the reference of a node goes (`bvh.glsl`).
+const LARGEST_INDEX: usize = (1 << INDEX_BITS) - 1;
 /// Lengths, factors and their inverses up to here can be squared, and boxes' areas summed, within float32.
 const LARGEST: f64 = 1e15;
 
 /// What the shaders read; no array is empty, since no Vulkan buffer may be.
 #[derive(Clone, Debug)]
 pub struct SceneArrays {
-    /// The tree over the instances (root 0), then one tree for each distinct mesh.
+    /// The tree over the instances, then one tree for each distinct mesh.
     pub nodes: Vec<Node>,
     /// Object units, in the order of the leaves.
     pub triangles: Vec<Triangle>,
     /// Beside the triangles.
     pub normals: Vec<TriangleNormals>,
+    /// Texture coordinates beside the triangles; empty where no texture is on a mesh.
+    pub coordinates: Vec<TriangleCoordinates>,
     /// In the order of the leaves; an object without triangles has none.
     pub instances: Vec<Instance>,
     /// As [`Scene::materials`].
     pub materials: Vec<Material>,
     /// As [`Scene::lights`].
     pub lights: Vec<Light>,
+    /// Of the materials.
+    pub textures: Arc<Textures>,
 }
 
 impl SceneArrays {
@@ -61,7 +68,10 @@ impl SceneArrays {
     /// taken as they are. Of a scene that moves, every array is as long at one time as at another, and its instances are
     /// in the order of the objects.
     pub fn build_with(scene: &Scene, trees: &mut Trees) -> Result<SceneArrays, AccelError> {
-        let mut meshes = Meshes::default();
+        let textures = trees.textures(scene)?;
+        let shown =
+            |object: &Object| matches!(object.shape, Shape::Mesh { .. }) && textures.of_material[object.material] > 0;
+        let mut meshes = Meshes::new(scene.objects.iter().any(shown));
         let mut add = |object: usize, name: &str, mesh: &Arc<Mesh>| {
             meshes.add(trees, name, mesh, scene.deforms(object).then_some(object))
         };
@@ -81,18 +91,24 @@ impl SceneArrays {
             _ if scene.moves() => Tree::apart(&boxes, TOP_LEVELS),
             _ => Tree::over(&boxes, TOP_LEVELS),
         };
-        let base = top.nodes.len() as u32;
+        let base = top.entries() as u32;
         let instance = |&i: &u32| {
             let p = &placed[i as usize];
             Instance { detail: p.mesh.map_or(p.instance.detail, |m| base + meshes.all[m].root), ..p.instance }
         };
         let arrays = SceneArrays {
             instances: filled(top.order.iter().filter(|&&i| (i as usize) < placed.len()).map(instance).collect()),
-            nodes: top.moved(0, 0).chain(meshes.nodes(base)).collect(),
+            nodes: top.packed(0, 0).chain(meshes.nodes(base)).collect(),
             triangles: filled(meshes.triangles),
             normals: filled(meshes.normals),
-            materials: filled(scene.materials.iter().map(material).collect::<Result<_, _>>()?),
+            coordinates: meshes.coordinates,
+            materials: filled(
+                (scene.materials.iter().zip(&textures.of_material))
+                    .map(|(one, texture)| Ok(Material { texture: *texture, ..material(one)? }))
+                    .collect::<Result<_, AccelError>>()?,
+            ),
             lights: filled(scene.lights.iter().map(|one| light(scene, one)).collect::<Result<_, _>>()?),
+            textures,
         };
         check_count("nodes", arrays.nodes.len(), LARGEST_INDEX)?;
         Ok(arrays)
@@ -109,7 +125,7 @@ fn filled<T: Default>(mut array: Vec<T>) -> Vec<T> {
 
 /// A tree that no ray enters: one leaf beyond every t; the instance it names is filler.
 fn nowhere() -> Tree {
-    Tree { nodes: vec![Node { lo: [f32::MAX; 3], count: 1, hi: [f32::MAX; 3], first: 0 }], order: vec![] }
+    Tree { nodes: vec![Branch { lo: [f32::MAX; 3], count: 1, hi: [f32::MAX; 3], first: 0 }], order: vec![] }
 }
 
 fn check_count(what: &'static str, count: usize, limit: usize) -> Result<(), AccelError> {
@@ -130,7 +146,7 @@ fn place(
     add: &mut impl FnMut(usize, &str, &Arc<Mesh>) -> Result<usize, AccelError>,
 ) -> Result<Option<Placed>, AccelError> {
     let name = &object.name;
-    let (mut mesh, mut detail) = (None, 0);
+    let (mut mesh, mut detail, mut phase) = (None, 0, 0.0);
     let (kind, to_world, (lo, hi)) = match &object.shape {
         Shape::Sphere { center, radius } => {
             let reach = DVec3::splat(*radius);
@@ -147,6 +163,9 @@ fn place(
         }
         Shape::Mesh { mesh, .. } if mesh.triangles.is_empty() => return Ok(None),
         Shape::Canonical { kind, to_world } => {
+            if let Canonical::Sine { phase: of, .. } = kind {
+                phase = *of as f32;
+            }
             let (kind, more) = canonical(kind);
             detail = more.to_bits();
             let [lo, hi] = object.shape.bounds().unwrap_or_default();
@@ -168,6 +187,7 @@ fn place(
         material: object.material as u32,
         object: index as u32,
         detail,
+        phase,
     };
     Ok(Some(Placed { instance, mesh, bounds: roomy_box(lo, hi) }))
 }
@@ -179,7 +199,7 @@ fn canonical(kind: &Canonical) -> (u32, f32) {
         Canonical::Disk => (SHAPE_DISK, 0.0),
         Canonical::Cylinder { cut } => (SHAPE_CYLINDER, cut as f32),
         Canonical::Paraboloid { cut } => (SHAPE_PARABOLOID, cut as f32),
-        Canonical::Sine { wave } => (SHAPE_SINE, wave as f32),
+        Canonical::Sine { wave, .. } => (SHAPE_SINE, wave as f32),
     }
 }
 
@@ -193,7 +213,7 @@ fn bounds(mesh: &Mesh, to_world: &DAffine3) -> (DVec3, DVec3) {
 fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
     let name = &material.name;
     let (kind, ior, colour, absorption) = match material.kind {
-        MaterialKind::Diffuse { albedo } => (MATERIAL_DIFFUSE, [1.0; 3], albedo, [0.0; 3]),
+        MaterialKind::Diffuse { albedo, .. } => (MATERIAL_DIFFUSE, [1.0; 3], albedo, [0.0; 3]),
         MaterialKind::Dielectric { ior, absorption } => (MATERIAL_DIELECTRIC, ior, [1.0; 3], absorption),
         MaterialKind::Mirror { reflectance } => (MATERIAL_MIRROR, [1.0; 3], reflectance, [0.0; 3]),
         MaterialKind::Conductor { eta, k } => (MATERIAL_CONDUCTOR, eta, [1.0; 3], k),
@@ -203,6 +223,7 @@ fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
         ior: vector(name, "its index", ior.into())?,
         colour: vector(name, "its colour", colour.into())?,
         absorption: vector(name, "its absorption", absorption.into())?,
+        texture: 0,
     })
 }
 

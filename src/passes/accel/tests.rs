@@ -22,9 +22,10 @@ fn constants_agree_with_the_shaders() {
     let source =
         |file: &str| std::fs::read_to_string(format!("{}/glsl/shared/{file}", env!("CARGO_MANIFEST_DIR"))).unwrap();
     assert!(source("bvh.glsl").contains(&format!("const int TRAVERSAL_STACK = {TRAVERSAL_STACK};")));
-    assert!(source("bvh.glsl").contains(&format!("node & {LARGEST_INDEX:#010x}u")));
     let scene = source("scene.glsl");
+    assert!(scene.contains(&format!("const uint NODE_INDEX = {LARGEST_INDEX:#010x}u;")));
     for (name, value) in [
+        ("GRID_ENTRIES", GRID_ENTRIES),
         ("SHAPE_SPHERE", SHAPE_SPHERE),
         ("SHAPE_QUAD", SHAPE_QUAD),
         ("SHAPE_MESH", SHAPE_MESH),
@@ -91,14 +92,14 @@ fn a_mesh_used_twice_is_built_once() {
 fn indices_stay_inside_their_arrays() {
     let all = arrays(&load("bunny"));
     let (mut open, mut triangles) = (vec![], 0);
-    open.extend(all.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.detail));
+    open.extend(all.instances.iter().filter(|i| i.kind == SHAPE_MESH).map(|i| i.detail + GRID_ENTRIES));
     while let Some(index) = open.pop() {
         let node = all.nodes[index as usize];
-        if node.count == 0 {
-            open.extend([node.first, node.first + 1]);
+        if node.count() == 0 {
+            open.extend([node.first(), node.first() + 1]);
         } else {
-            assert!((node.first + node.count) as usize <= all.triangles.len());
-            triangles += node.count as usize;
+            assert!((node.first() + node.count()) as usize <= all.triangles.len());
+            triangles += node.count() as usize;
         }
     }
     assert_eq!(triangles, all.triangles.len());
@@ -118,12 +119,20 @@ fn nothing_and_an_empty_mesh_have_no_instance() {
     let mut scene = load("bunny");
     scene.objects.retain(|o| matches!(o.shape, Shape::Mesh { .. }));
     let Shape::Mesh { mesh, .. } = &mut scene.objects[0].shape else { panic!("not a mesh") };
-    *mesh =
-        Arc::new(Mesh { file: "none.obj".into(), positions: vec![], normals: vec![], triangles: vec![], sheet: None });
+    *mesh = Arc::new(Mesh {
+        file: "none.obj".into(),
+        positions: vec![],
+        normals: vec![],
+        triangles: vec![],
+        coordinates: vec![],
+        sheet: None,
+    });
     for objects in [scene.objects.clone(), vec![]] {
         scene.objects = objects;
         let all = arrays(&scene);
-        assert_eq!(all.nodes, [Node { lo: [f32::MAX; 3], count: 1, hi: [f32::MAX; 3], first: 0 }]);
+        let [origin, cell, root] = all.nodes[..] else { panic!("{} entries", all.nodes.len()) };
+        assert_eq!([origin.corners, cell.corners], [[f32::MAX.to_bits(); 3], [0; 3]]);
+        assert_eq!((root.corners, root.count(), root.first()), ([0; 3], 1, 0));
         assert_eq!(all.instances, [Instance::default()]);
         assert_eq!(all.triangles.len(), 1);
     }
@@ -174,6 +183,7 @@ fn what_float32_cannot_square_is_named() {
         positions: vec![Vec3::ZERO],
         normals: vec![],
         triangles: vec![[0, 0, 9]],
+        coordinates: vec![],
         sheet: None,
     };
     let missing = with(Shape::Mesh { mesh: Arc::new(mesh), to_world: DAffine3::IDENTITY });

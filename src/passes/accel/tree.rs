@@ -2,11 +2,23 @@
 use glam::Vec3A;
 use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
 
-use super::layout::Node;
+use super::{
+    grid::Grid,
+    layout::{GRID_ENTRIES, INDEX_BITS, Node},
+};
+
+/// A node: `count` 0 for an inner one with children `first` and `first + 1`, else a leaf of so many primitives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Branch {
+    pub lo: [f32; 3],
+    pub count: u32,
+    pub hi: [f32; 3],
+    pub first: u32,
+}
 
 /// A tree whose leaves index `order`, which holds the caller's primitives in the order of the leaves.
 pub struct Tree {
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<Branch>,
     pub order: Vec<u32>,
 }
 
@@ -17,7 +29,7 @@ const _: () = assert!(PARAMS.max_prims_per_leaf < 16 && !PARAMS.pre_split);
 /// One primitive a leaf.
 const APART: BvhBuildParams = BvhBuildParams { max_prims_per_leaf: 1, ..PARAMS };
 
-/// Nodes of a tree over so many primitives, at most: one a leaf.
+/// Branchs of a tree over so many primitives, at most: one a leaf.
 pub fn most_nodes(primitives: usize) -> usize {
     (2 * primitives).saturating_sub(1).max(1)
 }
@@ -49,7 +61,7 @@ impl Tree {
 
     /// Halved at the median along the longest side of the centres, down to leaves of a few.
     fn balanced(boxes: &[Aabb], leaf: usize) -> Tree {
-        let mut tree = Tree { nodes: vec![Node::default()], order: (0..boxes.len() as u32).collect() };
+        let mut tree = Tree { nodes: vec![Branch::default()], order: (0..boxes.len() as u32).collect() };
         let mut open = vec![(0, 0..boxes.len())];
         while let Some((index, range)) = open.pop() {
             let of = |&i: &u32| boxes[i as usize];
@@ -64,17 +76,17 @@ impl Tree {
                 part.select_nth_unstable_by(middle, |a, b| of(a).center()[axis].total_cmp(&of(b).center()[axis]));
                 let first = tree.nodes.len();
                 open.extend([(first, range.start..range.start + middle), (first + 1, range.start + middle..range.end)]);
-                tree.nodes.extend([Node::default(); 2]);
+                tree.nodes.extend([Branch::default(); 2]);
                 (0, first as u32)
             };
-            tree.nodes[index] = Node { lo: around.min.into(), count, hi: around.max.into(), first };
+            tree.nodes[index] = Branch { lo: around.min.into(), count, hi: around.max.into(), first };
         }
         tree
     }
 
     fn clustered(boxes: &[Aabb], params: BvhBuildParams) -> Tree {
         let bvh = build_bvh2(boxes, params, &mut std::time::Duration::default());
-        let node = |node: &obvhs::bvh2::node::Bvh2Node| Node {
+        let node = |node: &obvhs::bvh2::node::Bvh2Node| Branch {
             lo: node.aabb().min.into(),
             count: node.prim_count,
             hi: node.aabb().max.into(),
@@ -95,7 +107,7 @@ impl Tree {
         }
         // Children come after their parents.
         for index in all.into_iter().rev() {
-            let Node { count, first, .. } = self.nodes[index];
+            let Branch { count, first, .. } = self.nodes[index];
             let (first, count) = (first as usize, count as usize);
             let around = match count {
                 0 => [first, first + 1].map(|child| self.bounds(child)).into_iter().reduce(|a, b| a.union(&b)),
@@ -140,9 +152,20 @@ impl Tree {
         deepest
     }
 
-    /// The nodes with their indices moved: children by `nodes`, primitives by `primitives`.
-    pub fn moved(&self, nodes: u32, primitives: u32) -> impl Iterator<Item = Node> {
-        self.nodes.iter().map(move |n| Node { first: n.first + if n.count == 0 { nodes } else { primitives }, ..*n })
+    /// Entries of the tree as the shaders read it.
+    pub fn entries(&self) -> usize {
+        GRID_ENTRIES as usize + self.nodes.len()
+    }
+
+    /// The tree as the shaders read it: its grid, then its nodes, which begin at `entry` of all; primitives are counted from
+    /// `primitive` on.
+    pub fn packed(&self, entry: u32, primitive: u32) -> impl Iterator<Item = Node> {
+        let grid = Grid::about(&self.nodes[0]);
+        let nodes = self.nodes.iter().map(move |branch| {
+            let first = branch.first + if branch.count == 0 { entry + GRID_ENTRIES } else { primitive };
+            Node { corners: grid.corners(branch), reference: branch.count << INDEX_BITS | first }
+        });
+        grid.entries().into_iter().chain(nodes)
     }
 }
 

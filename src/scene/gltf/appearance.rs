@@ -89,7 +89,7 @@ pub fn look(document: &Document, index: Option<usize>, scale: f64) -> Result<Loo
         let metal = metallic >= METAL;
         lacks(metal && index.is_some(), format!("being a rough metal (roughness {roughness})"));
         lacks(!metal && roughness < ROUGH, format!("its gloss (roughness {roughness})"));
-        MaterialKind::Diffuse { albedo: colour }
+        MaterialKind::Diffuse { albedo: colour, texture: None }
     };
     lacks(written.alpha_mode != "OPAQUE" && alpha < 1.0, format!("its transparency (alpha {alpha})"));
     lacks(written.emissive_factor != [0.0; 3], "the light that it gives".to_owned());

@@ -241,6 +241,6 @@ impl Soup {
             }
         }
         let Soup { positions, normals, triangles, .. } = self;
-        Mesh { file: file.to_owned(), positions, normals, triangles, sheet: None }
+        Mesh { file: file.to_owned(), positions, normals, triangles, coordinates: vec![], sheet: None }
     }
 }

@@ -2,6 +2,7 @@
 use std::collections::BTreeMap;
 
 use glam::DAffine3;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
@@ -28,21 +29,27 @@ const WATTS_PER_LUMEN: f64 = 1.0 / 683.0;
 const OBJECTS: usize = 1024;
 const BYTES_AN_OBJECT: usize = 8;
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ImportFile {
+    /// Path of a glTF file, `.gltf` or `.glb`.
     pub file: String,
+    /// Metres a unit of the file.
     #[serde(default = "one")]
     pub scale: f64,
+    /// Where its origin is.
     #[serde(default)]
     pub position: Floats<3>,
+    /// Degrees about x, then y, then z.
     #[serde(default)]
     pub rotate: Floats<3>,
-    /// By the file's names, the scene's.
+    /// By the file's names, the scene's materials that stand for its own.
     #[serde(default)]
     pub materials: BTreeMap<String, String>,
+    /// Whether its lights come along.
     #[serde(default = "yes")]
     pub lights: bool,
+    /// Of its lights; without it 1/683.
     pub watts_per_lumen: Option<f64>,
 }
 

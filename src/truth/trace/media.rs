@@ -107,9 +107,9 @@ fn depth_below(shape: &Shape, p: DVec3) -> Option<f64> {
         Shape::Canonical { kind: Canonical::Disk, to_world } => {
             (to_world.translation, to_world.matrix3.x_axis, to_world.matrix3.y_axis, true)
         }
-        Shape::Canonical { kind: Canonical::Sine { wave }, to_world } => {
+        Shape::Canonical { kind: Canonical::Sine { wave, phase }, to_world } => {
             let at = to_world.inverse().transform_point3(p);
-            let depth = ((wave * at.x).sin() - at.z) * to_world.matrix3.z_axis.length();
+            let depth = ((wave * at.x + phase).sin() - at.z) * to_world.matrix3.z_axis.length();
             return (depth > 0.0 && at.truncate().abs().max_element() <= 1.0).then_some(depth);
         }
         Shape::Mesh { mesh, to_world } => {
