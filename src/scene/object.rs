@@ -32,7 +32,7 @@ pub fn object(
     let material = key.key("material").resolve("a material", &file.material, names)?;
     let shape = shape(key, file, unit, meshes)?;
     shape_files::refuse_open_shell(key, &shape, &materials[material])?;
-    picture::refuse_no_coordinates(key, &shape, &materials[material])?;
+    picture::refuse_no_coordinates(&key.key("material"), &shape, &materials[material])?;
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
 }
 

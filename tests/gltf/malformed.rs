@@ -62,6 +62,7 @@ const CASES: &[Case] = &[
     ("/meshes/0/primitives/0/attributes/POSITION", "null", "positions as `POSITION`", "none at bad.glb: meshes[0].primitives[0].attributes", EXPORT),
     ("/meshes/0/primitives/0/attributes/POSITION", "2", "positions as VEC3", "SCALAR of U16", EXPORT),
     ("/meshes/0/primitives/0/attributes/NORMAL", "9", "the index of one of 3 accessors", "9 at bad.glb", EXPORT),
+    ("/meshes/0/primitives/0/attributes/TEXCOORD_0", "0", "texture coordinates as VEC2", "VEC3 of F32", EXPORT),
     ("/meshes/0/primitives/0/mode", "7", "4, 5 or 6 for triangles", "7 at bad.glb: meshes[0].primitives[0].mode", EXPORT),
     ("/meshes/0/primitives/0/material", "1", "the index of one of 1 materials", "1 at bad.glb", EXPORT),
     ("/meshes/0/primitives/0/indices", "null", "whole triangles", "4 at bad.glb: meshes[0].primitives[0].indices", EXPORT),
@@ -179,7 +180,7 @@ fn numbers_in_the_buffer_are_checked() {
         file.glb()
     };
     let position = "meshes[0].primitives[0].attributes.POSITION";
-    judge("bad.glb", with(16, &f32::NAN.to_le_bytes()), ["finite numbers", "[1, NaN, 0] as number 1", EXPORT]);
+    judge("bad.glb", with(16, &f32::NAN.to_le_bytes()), ["finite numbers", "[1.0, NaN, 0.0] as number 1", EXPORT]);
     judge("bad.glb", with(12, &f32::INFINITY.to_le_bytes()), ["finite numbers", position, EXPORT]);
     judge("bad.glb", with(48, &f32::NAN.to_le_bytes()), ["finite numbers", "attributes.NORMAL", EXPORT]);
     let indices =

@@ -199,6 +199,42 @@ fn quantized_numbers_are_shares() {
     assert_eq!(mesh.normals, [Vec3::Z, Vec3::NEG_Z, Vec3::Y]);
 }
 
+/// (0, 0) is a picture's upper left there, and its lower left here; vertices with and without them in one object have none.
+#[test]
+fn texture_coordinates_are_read_where_all_vertices_have_them() {
+    let mut file = small();
+    let pairs = [[0.0_f32, 0.0], [1.0, 0.0], [0.25, 0.75], [0.5, 1.0]];
+    let bytes: Vec<u8> = pairs.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let coordinates = file.accessor(F32, "VEC2", 4, &bytes);
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(coordinates);
+    let scene = read(&file);
+    let (mesh, _) = mesh(&scene, "room/Stone");
+    for (position, at) in mesh.positions.iter().zip(&mesh.coordinates) {
+        let corner = CORNERS.iter().position(|corner| *corner == position.to_array()).expect("a corner");
+        assert_eq!(at.to_array(), [pairs[corner][0], 1.0 - pairs[corner][1]]);
+    }
+    assert_eq!(mesh.coordinates.len(), 4);
+    let more = json!({ "attributes": { "POSITION": 0, "NORMAL": 1 }, "indices": 2, "material": 0 });
+    file.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(more);
+    assert!(self::mesh(&read(&file), "room/Stone").0.coordinates.is_empty());
+    // Of a file as a mesh too, which a material with a texture then may have.
+    let folder = Folder::new();
+    file.json["meshes"][0]["primitives"].as_array_mut().unwrap().pop();
+    folder.write("room.glb", file.glb());
+    folder.write("tiles.png", include_bytes!("../../scenes/water.png"));
+    let tiles = "[materials.tiles.diffuse]\ntexture = \"tiles.png\"\n";
+    let stone = "[objects.stone]\nmaterial = \"tiles\"\nmesh = { file = \"room.glb\", fit = 1, center = [0, 1, 0] }\n";
+    let import = "[imports.room]\nfile = \"room.glb\"\nmaterials = { Glass = \"tiles\" }\n";
+    let scene = folder.load_with(&format!("{tiles}{stone}{import}"), &[]).unwrap();
+    assert!(["stone", "room/Stone"].iter().all(|name| self::mesh(&scene, name).0.coordinates.len() == 4));
+    folder.write("room.glb", small().glb());
+    for (more, key) in [(stone, "objects.stone.material"), (import, "imports.room.materials")] {
+        let error = folder.load_with(&format!("{tiles}{more}"), &[]).unwrap_err();
+        assert!(error.key == key && error.expected.contains("texture coordinates"), "{error}");
+        assert!(error.remedy.contains("`TEXCOORD_0` in glTF"), "{error}");
+    }
+}
+
 /// Every other triangle of a strip is turned, so that all face one way; without normals each is flat.
 #[test]
 fn strips_and_fans_are_wound_one_way() {

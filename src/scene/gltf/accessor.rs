@@ -147,7 +147,11 @@ impl Document {
             let found = format!("{} of {component:?} in {path}", written.kind);
             return Err(fault(used_at, wanted.told, found, EXPORT));
         }
-        let width = if wanted.kind == "VEC3" { 3 } else { 1 };
+        let width = match wanted.kind {
+            "VEC3" => 3,
+            "VEC2" => 2,
+            _ => 1,
+        };
         let size = width * component.size();
         let base = written.buffer_view.map(|view| {
             let view_path = format!("{path}.bufferView");

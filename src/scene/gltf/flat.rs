@@ -16,6 +16,7 @@ impl Document {
             coordinates: vec![],
             sheet: None,
         };
+        let mut bare = false;
         for node in self.placed()? {
             let Some(index) = self.json.nodes[node.node].mesh else { continue };
             let path = format!("nodes[{}]", node.node);
@@ -35,6 +36,8 @@ impl Document {
                     let remedy = "scale the node down, or move it nearer";
                     return Err(fault(path, "coordinates of single precision", beyond.to_string(), remedy));
                 }
+                bare |= mesh.coordinates.is_empty();
+                all.coordinates.extend(mesh.coordinates);
                 all.positions.extend(mesh.positions);
                 all.normals.extend(mesh.normals);
                 all.triangles.extend(mesh.triangles.into_iter().map(|corners| corners.map(|k| first + k)));
@@ -43,6 +46,9 @@ impl Document {
         if all.triangles.is_empty() {
             let remedy = "check that this is the right file";
             return Err(fault("", "triangles in the nodes of the scene", "none", remedy));
+        }
+        if bare {
+            all.coordinates.clear();
         }
         Ok(all)
     }

@@ -1,7 +1,7 @@
 //! Triangles of a mesh, by material.
 use std::{cell::OnceCell, collections::HashMap, sync::Arc};
 
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 use super::{
     Document, EXPORT, GltfFault,
@@ -21,6 +21,11 @@ const NORMALS: Wanted = Wanted {
     kind: "VEC3",
     components: &[Component::F32, Component::I8, Component::I16],
     told: "normals as VEC3 of float (or, quantized, of 8 or 16 bits)",
+};
+const COORDINATES: Wanted = Wanted {
+    kind: "VEC2",
+    components: &[Component::F32, Component::U8, Component::U16],
+    told: "texture coordinates as VEC2 of float (or of 8 or 16 bits)",
 };
 const INDICES: Wanted = Wanted {
     kind: "SCALAR",
@@ -96,6 +101,16 @@ struct Soup {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
+    coordinates: Vec<Vec2>,
+    /// Whether some vertices have no texture coordinates; those of the others are then no use.
+    bare: bool,
+}
+
+/// The vertices of a primitive, checked.
+struct Vertices<'a> {
+    positions: (Accessor<'a>, String),
+    normals: Option<(Accessor<'a>, String)>,
+    coordinates: Option<(Accessor<'a>, String)>,
 }
 
 impl Document {
@@ -132,47 +147,34 @@ impl Document {
     }
 
     fn add(&self, path: &str, primitive: &Primitive, mode: usize, soup: &mut Soup) -> Result<(), GltfFault> {
-        let attribute =
-            |name: &str| primitive.attributes.get(name).map(|at| (*at, format!("{path}.attributes.{name}")));
-        let Some((positions, at)) = attribute("POSITION") else {
-            return Err(fault(format!("{path}.attributes"), "positions as `POSITION`", "none", EXPORT));
-        };
-        let positions = self.accessor(positions, &at, &POSITIONS)?;
-        let normals = attribute("NORMAL")
-            .map(|(index, at)| {
-                let normals = self.accessor(index, &at, &NORMALS)?;
-                let expected = format!("as many normals as positions, {}", positions.count);
-                let fits = normals.count == positions.count;
-                if fits { Ok((normals, at)) } else { Err(fault(at, expected, normals.count.to_string(), EXPORT)) }
-            })
-            .transpose()?;
+        let vertices = self.vertices(path, primitive)?;
         soup.coloured |= primitive.attributes.contains_key("COLOR_0");
-        let triangles = self.triangles(path, primitive, mode, positions.count)?;
-        let position = |index: u32| finite(&positions, index, &at).map(|p| p.as_vec3());
-        let Some((normals, at)) = normals else {
+        soup.bare |= vertices.coordinates.is_none();
+        let triangles = self.triangles(path, primitive, mode, vertices.positions.0.count)?;
+        if vertices.normals.is_none() {
             // Without normals a mesh is flat, says the specification.
             for corners in triangles {
-                let [a, b, c] = [position(corners[0])?, position(corners[1])?, position(corners[2])?];
                 let first = soup.positions.len() as u32;
-                let across = (b - a).as_dvec3().cross((c - a).as_dvec3());
-                soup.positions.extend([a, b, c]);
-                soup.normals.extend([across.try_normalize().unwrap_or(DVec3::Y).as_vec3(); 3]);
+                for index in corners {
+                    soup.push(&vertices, index)?;
+                }
+                let [a, b, c] = [0, 1, 2].map(|k| soup.positions[first as usize + k]);
+                let across = (b - a).as_dvec3().cross((c - a).as_dvec3()).try_normalize().unwrap_or(DVec3::Y).as_vec3();
+                soup.normals.extend([across; 3]);
                 soup.triangles.push([first, first + 1, first + 2]);
             }
             return Ok(());
-        };
+        }
         // Only vertices of triangles are held: primitives may share long lists of them.
-        let mut vertices = HashMap::new();
+        let mut known = HashMap::new();
         for corners in triangles {
             let mut here = [0; 3];
             for (vertex, index) in here.iter_mut().zip(corners) {
-                *vertex = match vertices.get(&index) {
+                *vertex = match known.get(&index) {
                     Some(vertex) => *vertex,
                     None => {
-                        let vertex = soup.positions.len() as u32;
-                        soup.positions.push(position(index)?);
-                        soup.normals.push(finite(&normals, index, &at)?.normalize_or_zero().as_vec3());
-                        vertices.insert(index, vertex);
+                        let vertex = soup.push(&vertices, index)?;
+                        known.insert(index, vertex);
                         vertex
                     }
                 };
@@ -180,6 +182,25 @@ impl Document {
             soup.triangles.push(here);
         }
         Ok(())
+    }
+
+    fn vertices(&self, path: &str, primitive: &Primitive) -> Result<Vertices<'_>, GltfFault> {
+        let at = |name: &str| format!("{path}.attributes.{name}");
+        let read = |name: &str, wanted: &Wanted| {
+            let index = primitive.attributes.get(name);
+            index.map(|index| Ok((self.accessor(*index, &at(name), wanted)?, at(name)))).transpose()
+        };
+        let Some(positions) = read("POSITION", &POSITIONS)? else {
+            return Err(fault(format!("{path}.attributes"), "positions as `POSITION`", "none", EXPORT));
+        };
+        let (normals, coordinates) = (read("NORMAL", &NORMALS)?, read("TEXCOORD_0", &COORDINATES)?);
+        for (what, other) in [("normals", &normals), ("texture coordinates", &coordinates)] {
+            if let Some((other, at)) = other.as_ref().filter(|(other, _)| other.count != positions.0.count) {
+                let expected = format!("as many {what} as positions, {}", positions.0.count);
+                return Err(fault(at, expected, other.count.to_string(), EXPORT));
+            }
+        }
+        Ok(Vertices { positions, normals, coordinates })
     }
 
     /// Corners as indices below `count`.
@@ -224,13 +245,28 @@ impl Document {
     }
 }
 
-fn finite(accessor: &Accessor, index: u32, at: &str) -> Result<DVec3, GltfFault> {
-    let value = DVec3::from_array(accessor.floats(index as usize));
-    let found = || format!("{value} as number {index}");
-    if value.is_finite() { Ok(value) } else { Err(fault(at, "finite numbers", found(), EXPORT)) }
+fn finite<const N: usize>((accessor, at): &(Accessor, String), index: u32) -> Result<[f64; N], GltfFault> {
+    let value: [f64; N] = accessor.floats(index as usize);
+    let found = || format!("{value:?} as number {index}");
+    if value.iter().all(|x| x.is_finite()) { Ok(value) } else { Err(fault(at, "finite numbers", found(), EXPORT)) }
 }
 
 impl Soup {
+    /// Adds a vertex, with its normal if it has one.
+    fn push(&mut self, vertices: &Vertices, index: u32) -> Result<u32, GltfFault> {
+        let vertex = self.positions.len() as u32;
+        self.positions.push(DVec3::from_array(finite(&vertices.positions, index)?).as_vec3());
+        if let Some(normals) = &vertices.normals {
+            self.normals.push(DVec3::from_array(finite(normals, index)?).normalize_or_zero().as_vec3());
+        }
+        if let Some(coordinates) = &vertices.coordinates {
+            // There a picture's (0, 0) is its upper left.
+            let [u, v] = finite(coordinates, index)?;
+            self.coordinates.push(Vec2::new(u as f32, (1.0 - v) as f32));
+        }
+        Ok(vertex)
+    }
+
     fn into_mesh(mut self, file: &str, mended: &mut usize) -> Mesh {
         let zeros = self.normals.iter().filter(|n| **n == Vec3::ZERO).count();
         if zeros > 0 {
@@ -240,7 +276,8 @@ impl Soup {
                 *normal = made;
             }
         }
-        let Soup { positions, normals, triangles, .. } = self;
-        Mesh { file: file.to_owned(), positions, normals, triangles, coordinates: vec![], sheet: None }
+        let Soup { positions, normals, triangles, coordinates, bare, .. } = self;
+        let coordinates = if bare { vec![] } else { coordinates };
+        Mesh { file: file.to_owned(), positions, normals, triangles, coordinates, sheet: None }
     }
 }

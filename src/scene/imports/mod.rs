@@ -12,6 +12,7 @@ use super::{
     gltf::Document,
     locate::Key,
     object::{BESIDE, Meshes},
+    picture::refuse_no_coordinates,
     shape_files,
 };
 
@@ -118,7 +119,13 @@ pub fn imports(
             most: OBJECTS + document.size / BYTES_AN_OBJECT,
             replaced: &file.materials,
         };
+        let before = all.objects.len();
         importer.run(&mut all).map_err(|fault| fault.in_scene(&key.key("file"), &file.file))?;
+        for (object, name) in &all.objects[before..] {
+            if let Some(material) = own.iter().find(|material| material.name == *name) {
+                refuse_no_coordinates(&key.key("materials"), &object.shape, material)?;
+            }
+        }
     }
     Ok(all)
 }
