@@ -23,9 +23,10 @@ fn offsets_agree() {
         host!("TriangleNormals", accel::TriangleNormals { a, b, c }),
         host!("Instance", accel::Instance { to_object, to_world, kind, material, object, detail, phase }),
         host!("Material", accel::Material { kind, ior, colour, absorption, texture }),
+        host!("Slide", accel::Slide { first, size, right, up }),
         host!("Texture", accel::Texture { first, size, repeat }),
         host!("TriangleCoordinates", accel::TriangleCoordinates { a, b, c }),
-        host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer }),
+        host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer, slide }),
         host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),
         host!("FrameData", FrameData { eye, time, index, seed, eye_media }),
         host!("View", ViewData { origin, x0, right, x1, up, y0, forward, y1, near, far, perspective, pad }),
@@ -37,6 +38,8 @@ fn offsets_agree() {
         ("HAS_QUADS", "1"),
         ("HAS_MESHES", "1"),
         ("HAS_TEXTURES", "1"),
+        ("HAS_SLIDES", "1"),
+        ("HAS_SLIDES", "1"),
         ("HAS_COORDINATES", "1"),
     ]
     .map(|(a, b)| (a.to_owned(), b.to_owned()))

@@ -126,7 +126,7 @@ fn lights_follow_their_keys_and_periods_begin_again() {
                   intensity = [{ time = 0, value = 100 }, { time = 1, value = [0, 50, 100] }]\n";
     let scene = written(&rewritten("moving-sphere", &[], motion), &[]);
     let at = |time: f64| match scene.at(time).lights[0].kind.clone() {
-        LightKind::Spot { position, intensity, beam } => (position, intensity, beam.axis),
+        LightKind::Spot { position, intensity, beam, .. } => (position, intensity, beam.axis),
         other => panic!("{other:?}"),
     };
     let (position, intensity, axis) = at(0.5);

@@ -98,7 +98,7 @@ fn lit(name: &str, light: &str) -> Scene {
     let spot = |position: DVec3| {
         let axis = (at(0.5, 0.0) - position).normalize();
         let beam = Beam { axis, inner: 1.0 - cosine(4.0), outer: 1.0 - cosine(12.0) };
-        LightKind::Spot { position, beam, intensity: [1.0, 2.0, 3.0] }
+        LightKind::Spot { position, beam, intensity: [1.0, 2.0, 3.0], slide: None }
     };
     let lamp = |kind| Light { name: "lamp".to_owned(), kind };
     match light {

@@ -78,6 +78,7 @@ struct Light {
     vec3 axis;   // spot: unit
     float inner; // 1 - cosine of the half angle up to which all of the power goes; above 2: everywhere
     float outer; // 1 - cosine of the half angle beyond which none does
+    uint slide;  // spot: 1 + index in scene_slides; 0: none
 };
 
 const uint LIGHT_DIRECTIONAL = 0u;
@@ -107,9 +108,37 @@ layout(set = 0, binding = 27, scalar) readonly buffer SceneCoordinates { Triangl
 #endif
 layout(set = 0, binding = 5, scalar) readonly buffer SceneLights { Light data[]; } scene_lights;
 
+#ifdef HAS_SLIDES
+// A picture that a spot projects. Products of a direction with `right` and `up`, over that with the axis, are -1 to 1 on it.
+struct Slide {
+    uint first; // in scene_slide_texels, rows from the top
+    uvec2 size; // pixels
+    vec3 right;
+    vec3 up;
+};
+layout(set = 0, binding = 28, scalar) readonly buffer SceneSlides { Slide data[]; } scene_slides;
+layout(set = 0, binding = 29, scalar) readonly buffer SceneSlideTexels { vec3 data[]; } scene_slide_texels;
+
+// Bilinear between the middles of pixels; nothing beside the picture and behind the light.
+vec3 slide_share(Slide slide, vec3 axis, vec3 d) {
+    float along = dot(axis, d);
+    if (!(along > 0.0)) return vec3(0.0);
+    vec2 at = vec2(dot(slide.right, d), dot(slide.up, d)) / along;
+    if (!(abs(at.x) <= 1.0 && abs(at.y) <= 1.0)) return vec3(0.0);
+    vec2 last = vec2(slide.size - 1u);
+    vec2 pixel = clamp(vec2(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y) * vec2(slide.size) - 0.5, vec2(0.0), last);
+    uvec2 low = uvec2(pixel), high = min(low + 1u, slide.size - 1u);
+    vec2 share = fract(pixel);
+    uint upper = slide.first + low.y * slide.size.x, lower = slide.first + high.y * slide.size.x;
+    vec3 above = mix(scene_slide_texels.data[upper + low.x], scene_slide_texels.data[upper + high.x], share.x);
+    vec3 below = mix(scene_slide_texels.data[lower + low.x], scene_slide_texels.data[lower + high.x], share.x);
+    return mix(above, below, share.y);
+}
+#endif
+
 // Share of a light's power that goes along unit d: of a spot, a smooth step between its two half angles. The height
 // 1 - cosine by the difference of the vectors keeps its digits in narrow beams.
-float light_share(Light light, vec3 d) {
+float beam_share(Light light, vec3 d) {
 #ifdef NO_SPOTS
     return 1.0;
 #else
@@ -120,6 +149,15 @@ float light_share(Light light, vec3 d) {
     float t = (light.outer - height) / (light.outer - light.inner);
     return t * t * (3.0 - 2.0 * t);
 #endif
+}
+
+// The same of each band, by the colours of what the light projects.
+vec3 light_share(Light light, vec3 d) {
+    vec3 share = vec3(beam_share(light, d));
+#ifdef HAS_SLIDES
+    if (light.slide != 0u && share.x > 0.0) share *= slide_share(scene_slides.data[light.slide - 1u], light.axis, d);
+#endif
+    return share;
 }
 
 // Classes of objects a ray asks for.

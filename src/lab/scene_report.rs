@@ -79,6 +79,8 @@ struct LightRow {
     power_w: Option<f64>,
     direction: Option<[f64; 3]>,
     position_m: Option<[f64; 3]>,
+    /// The picture that it projects.
+    image: Option<String>,
     /// What of it changes with time.
     moves: Vec<&'static str>,
 }
@@ -211,6 +213,10 @@ impl LightRow {
             power_w: light.kind.flux().map(|bands| bands.iter().sum::<f64>() / 3.0),
             direction: direction.map(|d| d.to_array()),
             position_m: light.kind.position().map(|p| p.to_array()),
+            image: match &light.kind {
+                LightKind::Spot { slide, .. } => slide.as_ref().map(|slide| slide.picture.file.clone()),
+                _ => None,
+            },
             moves: scene.light_motion(index),
         }
     }
@@ -219,7 +225,8 @@ impl LightRow {
         let unit = if self.position_m.is_some() { "W/sr" } else { "W/m2" };
         let at = self.position_m.map(|at| format!("at {}", vector(at)));
         let along = self.direction.map(|along| format!("along {}", vector(along)));
-        let place = at.into_iter().chain(along).collect::<Vec<_>>().join(", ");
+        let image = self.image.as_ref().map(|file| format!("throws {file}"));
+        let place = at.into_iter().chain(along).chain(image).collect::<Vec<_>>().join(", ");
         let power = self.power_w.map_or(Cell::None, |watts| Cell::Real(watts, 4));
         let strength = Cell::text(format!("{} {unit}", shown(self.bands)));
         vec![Cell::text(&self.name), Cell::text(self.kind), strength, power, Cell::text(place), moving(&self.moves)]

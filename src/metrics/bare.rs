@@ -69,8 +69,8 @@ impl Incident {
                 let way = position - point;
                 let (reach, towards) = (way.length(), way.normalize_or_zero());
                 // A light on the very point lights it from nowhere: the midpoint rule leaves it out.
-                let share = if reach > 0.0 { light.kind.share(-towards) / (reach * reach) } else { 0.0 };
-                Self { facing: mean(intensity) * share, towards, reach }
+                let share = if reach > 0.0 { light.kind.share(-towards) / (reach * reach) } else { DVec3::ZERO };
+                Self { facing: mean(&(DVec3::from(*intensity) * share).to_array()), towards, reach }
             }
         }
     }

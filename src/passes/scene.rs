@@ -35,6 +35,8 @@ pub struct SceneBuffers {
     materials: BufferId,
     lights: Option<BufferId>,
     textures: Option<TextureBuffers>,
+    /// What spots project, and its texels.
+    slides: Option<(BufferId, BufferId)>,
     /// Kinds of shapes that there are.
     kinds: Vec<(u32, &'static str)>,
     has_spots: bool,
@@ -75,6 +77,10 @@ impl SceneBuffers {
                 coordinates: (!arrays.coordinates.is_empty())
                     .then(|| plan.upload("scene/coordinates", &arrays.coordinates)),
             }),
+            slides: (!arrays.slides.is_empty()).then(|| {
+                let texels = plan.upload_shared("scene/slide-texels", arrays.textures.slides.clone());
+                (plan.upload("scene/slides", &arrays.slides), texels)
+            }),
             kinds: KINDS.into_iter().filter(|(kind, _)| any(*kind)).collect(),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
             is_dispersive: scene.is_dispersive(),
@@ -109,6 +115,12 @@ impl SceneBuffers {
     /// For a pass that asks the lights; nothing where there are none.
     pub fn lights<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         let pass = if self.has_spots { pass } else { pass.define("NO_SPOTS", 1) };
+        let pass = match self.slides {
+            Some((slides, texels)) => {
+                pass.define("HAS_SLIDES", 1).offer("scene_slides", slides).offer("scene_slide_texels", texels)
+            }
+            None => pass,
+        };
         match self.lights {
             Some(lights) => pass.offer("scene_lights", lights),
             None => pass,

@@ -33,8 +33,9 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
     let mut materials = each(root, "materials", &file.materials, |key, name, written| {
         Ok(Material { name, kind: material(key, written, &mut meshes)? })
     })?;
-    let mut lights =
-        each(root, "lights", &file.lights, |key, name, written| Ok(Light { name, kind: light(key, written, unit)? }))?;
+    let mut lights = each(root, "lights", &file.lights, |key, name, written| {
+        Ok(Light { name, kind: light(key, written, unit, &mut meshes)? })
+    })?;
     let imported = imports(root, &file.imports, unit, &materials, &mut meshes)?;
     materials.extend(imported.materials);
     materials.sort_by(|a, b| a.name.cmp(&b.name));

@@ -405,6 +405,10 @@ pub struct SpotFile {
     pub intensity: Colour,
     /// Degrees from the axis; without it the edge is sharp.
     pub inner: Option<f64>,
+    /// A PNG or an EXR that the light projects, its corners on the cone.
+    pub image: Option<String>,
+    /// Upright in the image; else +y, or −z in a beam along y.
+    pub up: Option<Floats<3>>,
     /// Degrees from the axis at which the light ends.
     pub outer: f64,
 }

@@ -97,7 +97,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["imports", _] => &["file", "scale", "position", "rotate", "materials", "lights", "watts_per_lumen"],
         ["lights", _, "directional"] => &["direction", "irradiance"],
         ["lights", _, "point"] => &["position", "intensity"],
-        ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "outer"],
+        ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "image", "up", "outer"],
         _ => &[],
     }
 }

@@ -4,9 +4,11 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::{
+    Picture, Slide,
     error::SceneError,
     file::{LightFile, SpotFile},
     locate::Key,
+    object::{BESIDE, Meshes},
 };
 
 /// Half angles of a spot's cone, degrees; of 180 it is a point light.
@@ -46,6 +48,8 @@ pub enum LightKind {
         intensity: [f64; 3],
         /// Which share of it goes where.
         beam: Beam,
+        /// By whose colours it is multiplied.
+        slide: Option<Slide>,
     },
 }
 
@@ -108,20 +112,27 @@ impl LightKind {
         match self {
             Self::Directional { .. } => None,
             Self::Point { intensity, .. } => Some(intensity.map(|band| 2.0 * TAU * band)),
-            Self::Spot { intensity, beam, .. } => Some(intensity.map(|band| beam.solid_angle() * band)),
+            Self::Spot { intensity, beam, slide, .. } => {
+                let whole = || DVec3::splat(beam.solid_angle());
+                let shares = slide.as_ref().map_or_else(whole, |slide| slide.solid_angle(beam));
+                Some((DVec3::from(*intensity) * shares).to_array())
+            }
         }
     }
 
-    /// Share of the power that goes along a unit vector.
-    pub fn share(&self, d: DVec3) -> f64 {
+    /// Share of the power that goes along a unit vector, of each band.
+    pub fn share(&self, d: DVec3) -> DVec3 {
         match self {
-            Self::Directional { .. } | Self::Point { .. } => 1.0,
-            Self::Spot { beam, .. } => beam.share(d),
+            Self::Directional { .. } | Self::Point { .. } => DVec3::ONE,
+            Self::Spot { beam, slide, .. } => {
+                let colour = slide.as_ref().map_or(DVec3::ONE, |slide| slide.share(beam.axis, d));
+                colour * beam.share(d)
+            }
         }
     }
 }
 
-pub(super) fn light(key: &Key, file: &LightFile, unit: f64) -> Result<LightKind, SceneError> {
+pub(super) fn light(key: &Key, file: &LightFile, unit: f64, meshes: &mut Meshes) -> Result<LightKind, SceneError> {
     match (&file.directional, &file.point, &file.spot) {
         (Some(sun), None, None) => {
             let key = key.key("directional");
@@ -137,12 +148,12 @@ pub(super) fn light(key: &Key, file: &LightFile, unit: f64) -> Result<LightKind,
                 intensity: key.key("intensity").strength(point.intensity, "an intensity in W/sr")?,
             })
         }
-        (None, None, Some(written)) => spot(&key.key("spot"), written, unit),
+        (None, None, Some(written)) => spot(&key.key("spot"), written, unit, meshes),
         _ => Err(key.one_kind(&["directional", "point", "spot"])),
     }
 }
 
-fn spot(key: &Key, file: &SpotFile, unit: f64) -> Result<LightKind, SceneError> {
+fn spot(key: &Key, file: &SpotFile, unit: f64, meshes: &mut Meshes) -> Result<LightKind, SceneError> {
     let half_angle = |name: &str, value: f64, range| {
         key.key(name).number(value, range, "a half angle in degrees", "it is measured from the axis to the edge")
     };
@@ -151,10 +162,19 @@ fn spot(key: &Key, file: &SpotFile, unit: f64) -> Result<LightKind, SceneError> 
     // 2 sin²(θ/2); of 180°, rounding must not leave a direction out.
     let height = |degrees: f64| if degrees == 180.0 { 3.0 } else { 2.0 * (0.5 * degrees.to_radians()).sin().powi(2) };
     let axis = key.key("direction").direction(file.direction)?;
+    let slide = file.image.as_ref().map(|name| {
+        let at = key.key("image");
+        let bytes = meshes.bytes(&at, name, "a readable picture", BESIDE)?;
+        Slide::new(key, Picture::read(&at, name, &bytes, "what a beam throws")?, file.up, axis, outer)
+    });
+    if slide.is_none() && file.up.is_some() {
+        return Err(key.key("up").fault("an image that stands upright", "none", "add `image`, or take `up` out"));
+    }
     Ok(LightKind::Spot {
         position: key.key("position").point(file.position, unit)?,
         intensity: key.key("intensity").strength(file.intensity, "an intensity in W/sr")?,
         beam: Beam { axis, inner: height(inner), outer: height(outer) },
+        slide: slide.transpose()?,
     })
 }
 

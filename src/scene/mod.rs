@@ -44,6 +44,7 @@ mod sheet;
 mod sheet_files;
 mod shipped;
 mod sine;
+mod slide;
 mod track;
 mod wave;
 
@@ -57,6 +58,7 @@ pub use light::{Beam, Light, LightKind};
 pub use models::Models;
 pub use picture::{Picture, Texture};
 pub use sheet::Sheet;
+pub use slide::Slide;
 pub use wave::Wave;
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.

@@ -175,7 +175,7 @@ impl LightMotion {
             LightKind::Point { position, intensity } => {
                 (*position, *intensity) = (at.unwrap_or(*position), strength.unwrap_or(*intensity));
             }
-            LightKind::Spot { position, intensity, beam } => {
+            LightKind::Spot { position, intensity, beam, .. } => {
                 (*position, *intensity) = (at.unwrap_or(*position), strength.unwrap_or(*intensity));
                 beam.axis = way.unwrap_or(beam.axis);
             }

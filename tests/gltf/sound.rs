@@ -33,7 +33,7 @@ fn each_kind_of_thing_comes_under_the_name_of_the_import() {
         &MaterialKind::Dielectric { ior: [1.45; 3], absorption: [0.0, 0.5 * ln2, ln2] }
     );
     assert_eq!(scene.materials[object(&scene, "room/Stone").material].name, "room/Glass");
-    let LightKind::Spot { position, intensity, beam } = light(&scene, "room/Lamp") else { panic!("no spot") };
+    let LightKind::Spot { position, intensity, beam, .. } = light(&scene, "room/Lamp") else { panic!("no spot") };
     close(*position, dvec3(0.0, 4.0, 0.0), ROUNDING);
     close(beam.axis, DVec3::NEG_Y, ROUNDING);
     close(DVec3::from_array(*intensity), DVec3::ONE, ROUNDING);
@@ -308,7 +308,7 @@ fn another_reader_reads_the_same() {
             seen += 1;
         }
         if let Some(written) = node.light() {
-            let LightKind::Spot { position, intensity, beam } = light(&ours, &name) else { panic!("no spot") };
+            let LightKind::Spot { position, intensity, beam, .. } = light(&ours, &name) else { panic!("no spot") };
             close(*position, world.transform_point3(DVec3::ZERO), SINGLE);
             close(beam.axis, world.transform_vector3(DVec3::NEG_Z), SINGLE);
             assert!((intensity[0] * 683.0 - f64::from(written.intensity())).abs() < SINGLE * 683.0);

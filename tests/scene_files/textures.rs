@@ -90,3 +90,31 @@ fn coordinates_that_are_none_are_named() {
         assert!(error.found.contains(found) && error.remedy.contains(remedy), "{error}");
     }
 }
+
+/// A spot added to the base scene, then the fault's key, and words of found and remedy.
+#[rustfmt::skip]
+const SLIDES: &[Case] = &[
+    ("outer = 20\nimage = \"none.png\"", "lights.beam.spot.image", "none.png: No such file", "relative to the scene file"),
+    ("outer = 20\nimage = \"scene.toml\"", "lights.beam.spot.image", "begins like neither", "PNG of 8 or 16 bits"),
+    ("outer = 20\nimage = \"clear.png\"", "lights.beam.spot.image", "lets light through", "without transparency"),
+    ("outer = 20\nimage = \"bright.exr\"", "lights.beam.spot.image", "is 1.5", "values from 0 to 1"),
+    ("outer = 20\nimage = 3", "lights.beam.spot.image", "integer `3`", "in quotes"),
+    ("outer = 90\nimage = \"good.png\"", "lights.beam.spot.outer", "90", "make the beam narrower"),
+    ("outer = 20\nup = [0, 0, 1]", "lights.beam.spot.up", "none", "add `image`"),
+    ("outer = 20\nup = [0, 2, 0]\nimage = \"good.png\"", "lights.beam.spot.up", "one along it", "choose another upright"),
+    ("outer = 20\nup = [0, 0, 0]\nimage = \"good.png\"", "lights.beam.spot.up", "[0, 0, 0]", "not zero"),
+];
+
+#[test]
+fn every_fault_of_a_projected_picture_is_named() {
+    let folder = folder();
+    let with = |more: &str| {
+        format!("{BASE}\n[lights.beam.spot]\nposition = [0, 3, 0]\ndirection = [0, -1, 0]\nintensity = 1\n{more}\n")
+    };
+    folder.load(with("outer = 20\nimage = \"good.png\""), &[]).unwrap_or_else(|error| panic!("{error}"));
+    for (more, key, found, remedy) in SLIDES {
+        let error = folder.load(with(more), &[]).expect_err(more);
+        assert_eq!(error.key, *key, "{more}\n{error}");
+        assert!(error.found.contains(found) && error.remedy.contains(remedy), "{more}\n{error}");
+    }
+}

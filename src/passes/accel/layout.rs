@@ -121,6 +121,22 @@ pub struct Light {
     pub inner: f32,
     /// 1 − cosine of the half angle beyond which none does.
     pub outer: f32,
+    /// 1 + index of the picture that it projects; 0 for none.
+    pub slide: u32,
+}
+
+/// A picture that a spot projects, among the texels of all slides.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Slide {
+    /// First of its texels, rows from the top.
+    pub first: u32,
+    /// Pixels.
+    pub size: [u32; 2],
+    /// Across it to the right, over its half width a unit along the axis.
+    pub right: [f32; 3],
+    /// Upwards, over its half height.
+    pub up: [f32; 3],
 }
 
 /// 1 − cosine beyond that of every direction.

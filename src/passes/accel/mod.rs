@@ -54,8 +54,10 @@ pub struct SceneArrays {
     pub materials: Vec<Material>,
     /// As [`Scene::lights`].
     pub lights: Vec<Light>,
-    /// Of the materials.
+    /// Of the materials and slides.
     pub textures: Arc<Textures>,
+    /// What spots project; empty where none does.
+    pub slides: Vec<Slide>,
 }
 
 impl SceneArrays {
@@ -96,6 +98,7 @@ impl SceneArrays {
             let p = &placed[i as usize];
             Instance { detail: p.mesh.map_or(p.instance.detail, |m| base + meshes.all[m].root), ..p.instance }
         };
+        let (slides, slide_of) = textures::thrown(scene);
         let arrays = SceneArrays {
             instances: filled(top.order.iter().filter(|&&i| (i as usize) < placed.len()).map(instance).collect()),
             nodes: top.packed(0, 0).chain(meshes.nodes(base)).collect(),
@@ -107,7 +110,12 @@ impl SceneArrays {
                     .map(|(one, texture)| Ok(Material { texture: *texture, ..material(one)? }))
                     .collect::<Result<_, AccelError>>()?,
             ),
-            lights: filled(scene.lights.iter().map(|one| light(scene, one)).collect::<Result<_, _>>()?),
+            lights: filled(
+                (scene.lights.iter().zip(slide_of))
+                    .map(|(one, slide)| Ok(Light { slide, ..light(scene, one)? }))
+                    .collect::<Result<_, AccelError>>()?,
+            ),
+            slides,
             textures,
         };
         check_count("nodes", arrays.nodes.len(), LARGEST_INDEX)?;
@@ -245,6 +253,7 @@ fn light(scene: &Scene, light: &crate::scene::Light) -> Result<Light, AccelError
         axis: vector(&light.name, "its axis", axis)?,
         inner,
         outer,
+        slide: 0,
     })
 }
 

@@ -1,8 +1,8 @@
-//! Textures as the shaders read them: the pixels of all pictures in one array, each picture once.
+//! Textures and slides as the shaders read them: the pixels of all pictures in one array.
 use std::sync::Arc;
 
-use super::{AccelError, LARGEST_INDEX, Texture, check_count};
-use crate::scene::{MaterialKind, Picture, Scene};
+use super::{AccelError, LARGEST_INDEX, Slide, Texture, check_count};
+use crate::scene::{Beam, LightKind, MaterialKind, Picture, Scene, Slide as SceneSlide};
 
 /// Of a scene; empty where it has none.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +13,8 @@ pub struct Textures {
     pub texels: Arc<[u8]>,
     /// Of each material, 1 + index in `all`; 0 for none.
     pub of_material: Vec<u32>,
+    /// Pixels of the pictures that spots project, in the order of the lights; as `texels`.
+    pub slides: Arc<[u8]>,
 }
 
 impl Textures {
@@ -42,6 +44,31 @@ impl Textures {
             textures.of_material.push(textures.all.len() as u32);
         }
         textures.texels = bytemuck::cast_slice(&texels).into();
+        let slides: Vec<[f32; 3]> =
+            slides(scene).flat_map(|(.., slide)| slide.picture.pixels.iter().copied()).collect();
+        check_count("pixels of slides", slides.len(), LARGEST_INDEX)?;
+        textures.slides = bytemuck::cast_slice(&slides).into();
         Ok(textures)
     }
+}
+
+/// Indices of the lights that project a picture, with it.
+fn slides(scene: &Scene) -> impl Iterator<Item = (usize, &Beam, &SceneSlide)> {
+    scene.lights.iter().enumerate().filter_map(|(index, light)| match &light.kind {
+        LightKind::Spot { beam, slide: Some(slide), .. } => Some((index, beam, slide)),
+        _ => None,
+    })
+}
+
+/// Where the slides are thrown now, and of each light 1 + index of its own; 0 for none.
+pub fn thrown(scene: &Scene) -> (Vec<Slide>, Vec<u32>) {
+    let (mut all, mut of_light, mut first) = (vec![], vec![0; scene.lights.len()], 0);
+    for (light, beam, slide) in slides(scene) {
+        let size = [slide.picture.width, slide.picture.height].map(|side| side as u32);
+        let [right, up] = slide.axes(beam.axis).map(|across| across.as_vec3().to_array());
+        all.push(Slide { first, size, right, up });
+        of_light[light] = all.len() as u32;
+        first += size[0] * size[1];
+    }
+    (all, of_light)
 }

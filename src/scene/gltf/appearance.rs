@@ -159,7 +159,7 @@ pub fn light(
             let inner = within(inner, cone.inner_cone_angle, 0.0..=outer, "a half angle in radians")?;
             let height = |angle: f64| 2.0 * (0.5 * angle).sin().powi(2);
             let beam = Beam { axis, inner: height(inner), outer: height(outer) };
-            LightKind::Spot { position, intensity: power, beam }
+            LightKind::Spot { position, intensity: power, beam, slide: None }
         }
         other => {
             let expected = "directional, point or spot";

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::walk::Start;
 use crate::{
-    scene::{Beam, LightKind, Scene, Shape},
+    scene::{LightKind, Scene, Shape},
     truth::trace::{Media, Ray, Space},
 };
 
@@ -40,8 +40,8 @@ pub enum Emission {
         flux: DVec3,
         /// What the light is in.
         media: Media,
-        /// Of a spot light, which share of its intensity goes where.
-        beam: Option<Beam>,
+        /// Which share of its intensity goes where.
+        light: Box<LightKind>,
     },
 }
 
@@ -55,13 +55,13 @@ impl Emission {
         let light = |kind: &LightKind| match kind {
             LightKind::Directional { direction, irradiance } => rectangle(*direction, *irradiance, &held, space),
             LightKind::Point { position, intensity } => {
-                held.cone(*position).emission(*position, *intensity, None, space.media(*position))
+                held.cone(*position).emission(*position, *intensity, kind, space.media(*position))
             }
-            LightKind::Spot { position, intensity, beam } => {
+            LightKind::Spot { position, intensity, beam, .. } => {
                 // Whichever holds less: what lies outside the other is dark, or meets nothing.
                 let (held, lit) = (held.cone(*position), Cone { axis: beam.axis, height: beam.outer.min(2.0) });
                 let cone = if held.height < lit.height { held } else { lit };
-                cone.emission(*position, *intensity, Some(*beam), space.media(*position))
+                cone.emission(*position, *intensity, kind, space.media(*position))
             }
         };
         space.scene.lights.iter().map(|l| light(&l.kind)).collect()
@@ -92,13 +92,13 @@ impl Emission {
                 let ray = Ray { o: corner + at.x * u + at.y * v, d: *d, left: None };
                 Start { ray, flux, media: None, band: 0 }
             }
-            Self::Cone { apex, frame: [axis, x, y], height, media, beam, .. } => {
+            Self::Cone { apex, frame: [axis, x, y], height, media, light, .. } => {
                 let below = height * at.x;
                 let across = (below * (2.0 - below)).max(0.0).sqrt();
                 let (sin, cos) = (TAU * at.y).sin_cos();
                 let d = (1.0 - below) * axis + across * (cos * x + sin * y);
                 let d = d.normalize();
-                let flux = flux * beam.map_or(1.0, |beam| beam.share(d));
+                let flux = flux * light.share(d);
                 Start { ray: Ray { o: *apex, d, left: None }, flux, media: Some(*media), band: 0 }
             }
         }
@@ -184,10 +184,10 @@ impl Held {
 }
 
 impl Cone {
-    fn emission(self, apex: DVec3, intensity: [f64; 3], beam: Option<Beam>, media: Media) -> Emission {
+    fn emission(self, apex: DVec3, intensity: [f64; 3], light: &LightKind, media: Media) -> Emission {
         let ([x, y], height) = (across(self.axis), self.height);
         let flux = DVec3::from(intensity) * TAU * height;
-        Emission::Cone { apex, frame: [self.axis, x, y], height, flux, media, beam }
+        Emission::Cone { apex, frame: [self.axis, x, y], height, flux, media, light: Box::new(light.clone()) }
     }
 }
 
