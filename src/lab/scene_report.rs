@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Cell, Report, Table};
 use crate::{
     metrics::bare_irradiance,
-    scene::{Camera, CameraKind, LightKind, Material, MaterialKind, Region, Scene, Shape},
+    scene::{Camera, CameraKind, Import, LightKind, Material, MaterialKind, Region, Scene, Shape},
 };
 
 /// One scene.
@@ -32,6 +32,7 @@ pub struct SceneReport {
     materials: Vec<MaterialRow>,
     lights: Vec<LightRow>,
     cameras: Vec<CameraRow>,
+    imports: Vec<ImportRow>,
     warnings: Vec<String>,
 }
 
@@ -97,6 +98,22 @@ struct CameraRow {
     hides_specular: bool,
 }
 
+/// What a glTF file brought; its things stand in the other tables, as `NAME/…`.
+#[derive(Debug, Serialize)]
+struct ImportRow {
+    name: String,
+    file: String,
+    /// Metres a unit of the file.
+    scale: f64,
+    objects: u64,
+    /// Of all of its objects.
+    triangles: u64,
+    /// Less those that the scene's own replace.
+    materials: u64,
+    lights: u64,
+    cameras: u64,
+}
+
 impl SceneReport {
     /// From a loaded scene.
     pub fn new(scene: &Scene) -> Self {
@@ -116,6 +133,7 @@ impl SceneReport {
             materials: scene.materials.iter().map(MaterialRow::new).collect(),
             lights: (0..scene.lights.len()).map(|light| LightRow::new(scene, light)).collect(),
             cameras: scene.cameras.iter().map(|(name, camera)| CameraRow::new(name, camera)).collect(),
+            imports: scene.imports.iter().map(ImportRow::new).collect(),
             warnings: scene.warnings.clone(),
         }
     }
@@ -235,6 +253,21 @@ impl CameraRow {
     }
 }
 
+impl ImportRow {
+    fn new(import: &Import) -> Self {
+        let [objects, triangles, materials, lights, cameras] =
+            [import.objects, import.triangles, import.materials, import.lights, import.cameras].map(|n| n as u64);
+        let (name, file) = (import.name.clone(), import.file.clone());
+        Self { name, file, scale: import.scale, objects, triangles, materials, lights, cameras }
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        let counts = [self.objects, self.triangles, self.materials, self.lights, self.cameras];
+        let told = [Cell::text(&self.name), Cell::text(&self.file), Cell::text(self.scale.to_string())];
+        told.into_iter().chain(counts.map(|count| Cell::count(Some(count)))).collect()
+    }
+}
+
 impl Report for SceneReport {
     fn heading(&self) -> Vec<String> {
         let [width, height] = self.region.size_m;
@@ -265,8 +298,10 @@ impl Report for SceneReport {
             self.materials.iter().map(|m| vec![Cell::text(&m.name), Cell::text(m.kind), Cell::text(m.text())]);
         let lights = self.lights.iter().map(LightRow::cells);
         let cameras = self.cameras.iter().map(CameraRow::cells);
+        let imports: Vec<_> = self.imports.iter().map(ImportRow::cells).collect();
+        let imported = ["import", "file", "m a unit", "objects", "triangles", "materials", "lights", "cameras"];
         let table = |name, columns: &[&'static str], rows| Table { name, columns: columns.to_vec(), rows };
-        vec![
+        let mut all = vec![
             table(
                 "objects",
                 &["object", "shape", "size m", "material", "triangles", "file", "seen", "moves"],
@@ -275,7 +310,11 @@ impl Report for SceneReport {
             table("materials", &["material", "kind", "what it does"], materials.collect()),
             table("lights", &["light", "kind", "strength", "power W", "place", "moves"], lights.collect()),
             table("cameras", &["camera", "kind", "field", "looks", "sees"], cameras.collect()),
-        ]
+        ];
+        if !imports.is_empty() {
+            all.push(table("imports", &imported, imports));
+        }
+        all
     }
 
     /// The heading's figures too.

@@ -1,10 +1,14 @@
 //! The checked scene from the file's tables.
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, HashMap},
+    sync::Arc,
+};
 
 use super::{
-    Camera, CameraKind, Light, Material, MaterialKind, PathClassError, Scene, Source, Texture, edges,
+    Camera, CameraKind, Light, Material, MaterialKind, Object, PathClassError, Scene, Source, Texture, edges,
     error::SceneError,
     file::{CameraFile, Colour, DiffuseFile, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
+    imports::imports,
     index::index,
     light::light,
     load::Files,
@@ -26,15 +30,22 @@ const FIELDS: std::ops::RangeInclusive<f64> = 0.001..=179.9;
 pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &Files) -> Result<Scene, SceneError> {
     let unit = root.key("unit").number(file.unit, 1e-9..=1e9, "metres per unit of length", "1 means metres")?;
     let mut meshes = Meshes::new(files, &source.resolved);
-    let materials = each(root, "materials", &file.materials, |key, name, written| {
+    let mut materials = each(root, "materials", &file.materials, |key, name, written| {
         Ok(Material { name, kind: material(key, written, &mut meshes)? })
     })?;
-    let lights = each(root, "lights", &file.lights, |key, name, written| {
+    let mut lights = each(root, "lights", &file.lights, |key, name, written| {
         Ok(Light { name, kind: light(key, written, unit, &mut meshes)? })
     })?;
-    let objects = each(root, "objects", &file.objects, |key, name, written| {
+    let imported = imports(root, &file.imports, unit, &materials, &mut meshes)?;
+    materials.extend(imported.materials);
+    materials.sort_by(|a, b| a.name.cmp(&b.name));
+    let mut objects = each(root, "objects", &file.objects, |key, name, written| {
         object(key, name, written, unit, &materials, &mut meshes)
     })?;
+    objects.extend(resolved(imported.objects, &materials));
+    objects.sort_by(|a, b| a.name.cmp(&b.name));
+    lights.extend(imported.lights);
+    lights.sort_by(|a, b| a.name.cmp(&b.name));
     let (region, extent) = patch::regions(root, &file.region, file.extent.as_ref(), unit, (&objects, &materials))?;
     let mut scene = Scene {
         name,
@@ -53,13 +64,15 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
             "0 is plain, each EV doubles",
         )?,
         cameras: cameras(&root.key("cameras"), &file.cameras, unit)?,
-        warnings: edges::warnings(&objects, &materials),
+        warnings: [imported.warnings, meshes.warnings, edges::warnings(&objects, &materials)].concat(),
+        imports: imported.imports,
         objects,
         materials,
         lights,
         time: 0.0,
         motion: None,
     };
+    scene.cameras.extend(imported.cameras);
     scene.cameras.insert("region".to_owned(), patch::camera(&scene));
     scene.motion = motion(&scene, &file.objects, &file.lights, root, unit)?.map(Arc::new);
     Ok(scene.at(0.0))
@@ -73,18 +86,26 @@ fn motion(
     root: &Key,
     unit: f64,
 ) -> Result<Option<Motion>, SceneError> {
-    // Both are in the order of their names, as the maps are.
     let mut motion = Motion { objects: Vec::new(), lights: Vec::new(), hash: scene.source.hash.clone() };
-    for (index, (object, file)) in scene.objects.iter().zip(objects.values()).enumerate() {
+    for (index, object) in scene.objects.iter().enumerate() {
+        // What is imported stands still.
+        let Some(file) = objects.get(&object.name) else { continue };
         let key = root.key("objects").key(&object.name);
         let moved = motion_files::object(&key, object, file, index == scene.region.receiver, unit)?;
         motion.objects.extend(moved.map(|moved| (index, moved)));
     }
-    for (index, (light, file)) in scene.lights.iter().zip(lights.values()).enumerate() {
+    for (index, light) in scene.lights.iter().enumerate() {
+        let Some(file) = lights.get(&light.name) else { continue };
         let moved = motion_files::light(&root.key("lights").key(&light.name), light, file, unit)?;
         motion.lights.extend(moved.map(|moved| (index, moved)));
     }
     Ok((!motion.objects.is_empty() || !motion.lights.is_empty()).then_some(motion))
+}
+
+/// The objects, each with the index of the material that it was given by name.
+fn resolved(objects: Vec<(Object, String)>, materials: &[Material]) -> impl Iterator<Item = Object> {
+    let index: HashMap<&str, usize> = materials.iter().enumerate().map(|(k, m)| (m.name.as_str(), k)).collect();
+    objects.into_iter().map(move |(object, name)| Object { material: index[name.as_str()], ..object })
 }
 
 /// One thing for each table under `kind`, in the order of their names.

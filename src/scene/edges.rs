@@ -15,6 +15,8 @@ struct Hole {
     length: f64,
     /// Mean of its edges by length.
     center: DVec3,
+    /// For maps that stretch them.
+    edges: Vec<DVec3>,
 }
 
 /// What is wrong with a mesh that should bound a medium; lengths in its own units.
@@ -74,8 +76,8 @@ impl Faults {
     fn told(&self, to_world: &DAffine3) -> impl Iterator<Item = String> {
         let mirror = "or give it a mirror or a diffuse material";
         let open = self.holes.first().map(|largest| {
-            // Maps of meshes scale evenly.
-            let (length, at) = (largest.length * to_world.x_axis.length(), to_world.transform_point3(largest.center));
+            let length: f64 = largest.edges.iter().map(|edge| to_world.transform_vector3(*edge).length()).sum();
+            let at = to_world.transform_point3(largest.center);
             let (count, s) = (self.holes.len(), if self.holes.len() == 1 { "" } else { "s" });
             format!(
                 "is a dielectric with {count} hole{s}, the largest {length:.4} m round about [{:.4}, {:.4}, {:.4}] m: light \
@@ -125,16 +127,17 @@ fn holes(mesh: &Mesh, open: &[(u32, u32)]) -> Vec<Hole> {
         let (a, b) = (root(&mut parents, *a), root(&mut parents, *b));
         parents.insert(a.max(b), a.min(b));
     }
-    let mut sums: BTreeMap<u32, (f64, DVec3)> = BTreeMap::new();
+    let mut sums: BTreeMap<u32, (f64, DVec3, Vec<DVec3>)> = BTreeMap::new();
     for (a, b) in open {
         let [p, q] = [*a, *b].map(|i| mesh.positions[i as usize].as_dvec3());
         let sum = sums.entry(root(&mut parents, *a)).or_default();
         let length = (q - p).length();
-        *sum = (sum.0 + length, sum.1 + length * 0.5 * (p + q));
+        (sum.0, sum.1) = (sum.0 + length, sum.1 + length * 0.5 * (p + q));
+        sum.2.push(q - p);
     }
     // Two different positions are some distance apart, so no length is zero.
     let mut holes: Vec<Hole> =
-        sums.into_values().map(|(length, moment)| Hole { length, center: moment / length }).collect();
+        sums.into_values().map(|(length, moment, edges)| Hole { length, center: moment / length, edges }).collect();
     holes.sort_by(|a, b| b.length.total_cmp(&a.length));
     holes
 }

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 pub use super::numbers::{Colour, Floats};
 use super::{
+    imports::ImportFile,
     index::IndexFile,
     motion_files::{LightMotionFile, ObjectMotionFile},
     schema,
@@ -44,6 +45,9 @@ pub struct SceneFile {
     /// Together they light the scene.
     #[serde(default)]
     pub lights: BTreeMap<String, LightFile>,
+    /// glTF files whose objects, materials, lights and cameras come along as `NAME/…`.
+    #[serde(default)]
+    pub imports: BTreeMap<String, ImportFile>,
 }
 
 #[derive(Deserialize, JsonSchema)]
@@ -296,7 +300,7 @@ pub struct WaveFile {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFile {
-    /// Path of an OBJ file, or `model:NAME` of the models folder.
+    /// Path of an OBJ or glTF file, or `model:NAME` of the models folder.
     pub file: String,
     /// Longest side of its bounding box.
     pub fit: f64,
@@ -409,7 +413,7 @@ pub struct SpotFile {
     pub outer: f64,
 }
 
-fn one() -> f64 {
+pub fn one() -> f64 {
     1.0
 }
 
@@ -417,7 +421,7 @@ fn full_turn() -> f64 {
     360.0
 }
 
-fn yes() -> bool {
+pub fn yes() -> bool {
     true
 }
 

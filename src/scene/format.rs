@@ -38,6 +38,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
             "objects",
             "materials",
             "lights",
+            "imports",
         ],
         ["region"] => &["receiver", "center", "half"],
         ["extent"] => &["center", "half"],
@@ -93,6 +94,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["materials", _, "mirror"] => &["reflectance"],
         ["materials", _, "conductor"] => &["eta", "k"],
         ["lights", _, "motion"] => &["position", "direction", "irradiance", "intensity", "period"],
+        ["imports", _] => &["file", "scale", "position", "rotate", "materials", "lights", "watts_per_lumen"],
         ["lights", _, "directional"] => &["direction", "irradiance"],
         ["lights", _, "point"] => &["position", "intensity"],
         ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "image", "up", "outer"],
@@ -105,7 +107,7 @@ mod tests {
     use serde::Deserialize;
 
     use super::keys;
-    use crate::scene::{file, motion_files};
+    use crate::scene::{file, imports, motion_files};
 
     /// The keys that the deserialiser names when it meets one that it does not know.
     fn known<T: for<'de> Deserialize<'de>>() -> Vec<String> {
@@ -143,6 +145,7 @@ mod tests {
         assert_eq!(keys(&["materials", "", "mirror"]), known::<file::MirrorFile>());
         assert_eq!(keys(&["materials", "", "conductor"]), known::<file::ConductorFile>());
         assert_eq!(keys(&["lights", ""]), known::<file::LightFile>());
+        assert_eq!(keys(&["imports", ""]), known::<imports::ImportFile>());
         assert_eq!(keys(&["lights", "", "directional"]), known::<file::DirectionalFile>());
         assert_eq!(keys(&["lights", "", "point"]), known::<file::PointFile>());
         assert_eq!(keys(&["lights", "", "spot"]), known::<file::SpotFile>());

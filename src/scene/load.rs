@@ -139,7 +139,7 @@ fn check_reserved(locator: &Locator) -> Result<(), SceneError> {
         let remedy = "take the key out: participating media are not built yet";
         return Err(root.key("medium").fault("no medium", "the reserved key `medium`", remedy));
     }
-    for kind in ["cameras", "objects", "materials", "lights"] {
+    for kind in ["cameras", "objects", "materials", "lights", "imports"] {
         for name in tree.get(kind).and_then(|value| value.get_ref().as_table()).into_iter().flat_map(|t| t.keys()) {
             check_name(&root.key(kind), name.get_ref())?;
         }

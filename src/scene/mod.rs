@@ -20,6 +20,8 @@ mod error;
 mod file;
 mod flow;
 mod format;
+mod gltf;
+mod imports;
 mod index;
 mod light;
 mod load;
@@ -51,6 +53,7 @@ use crate::names::NoSuch;
 pub use canonical::{Canonical, WHOLE};
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};
+pub use imports::Import;
 pub use light::{Beam, Light, LightKind};
 pub use models::Models;
 pub use picture::{MOST_PIXELS, Picture, Texture};
@@ -83,10 +86,13 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Sorted by name.
     pub lights: Vec<Light>,
+    /// What of all this came from glTF files, sorted by name.
+    pub imports: Vec<Import>,
     /// The time, s, at which all this is so; of a scene that stands still, 0.
     pub time: f64,
     motion: Option<Arc<motion::Motion>>,
-    /// What is no fault, but must be known to whoever reads its pictures: dielectric meshes with holes.
+    /// What is no fault, but must be known to whoever reads its pictures: dielectric meshes with holes, and what of a glTF
+    /// file is left out.
     pub warnings: Vec<String>,
 }
 
@@ -101,7 +107,7 @@ pub struct Source {
     pub overrides: Vec<(String, String)>,
     /// The scene as TOML with the overrides applied.
     pub resolved: String,
-    /// BLAKE3 (hexadecimal) of `resolved`, of every mesh file, and of the time where the scene moves.
+    /// BLAKE3 (hexadecimal) of `resolved`, of every mesh file and its buffers, and of the time where the scene moves.
     pub hash: String,
 }
 
@@ -133,7 +139,7 @@ impl Region {
 /// A shape and what it is made of.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// As in the file.
+    /// As in the file; `IMPORT/NODE` of a glTF file.
     pub name: String,
     /// In the world, metres.
     pub shape: Shape,
@@ -171,9 +177,9 @@ pub enum Shape {
     },
     /// Triangles.
     Mesh {
-        /// Shared by the objects that name the same file.
+        /// Shared by the objects that name the same file, or the same mesh of a glTF file.
         mesh: Arc<Mesh>,
-        /// Scales evenly, turns and moves.
+        /// Scales, turns and moves; only nodes of a glTF file stretch, and nothing mirrors.
         to_world: DAffine3,
     },
 }

@@ -1,5 +1,5 @@
 //! Objects: shapes checked, meshes read and put in place.
-use std::{collections::BTreeMap, sync::Arc};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use glam::{DAffine3, DVec3};
 
@@ -7,6 +7,8 @@ use super::{
     Material, Mesh, Models, Object, Picture, Shape,
     error::SceneError,
     file::{Floats, HeightsFile, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile, WaveFile},
+    gltf::Document,
+    imports::Told,
     load::Files,
     locate::Key,
     models, obj, picture, shape_files,
@@ -30,7 +32,7 @@ pub fn object(
     let material = key.key("material").resolve("a material", &file.material, names)?;
     let shape = shape(key, file, unit, meshes)?;
     shape_files::refuse_open_shell(key, &shape, &materials[material])?;
-    picture::refuse_no_coordinates(key, &shape, &materials[material])?;
+    picture::refuse_no_coordinates(&key.key("material"), &shape, &materials[material])?;
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
 }
 
@@ -76,7 +78,7 @@ fn sine(key: &Key, file: &SineFile, unit: f64) -> Result<Shape, SceneError> {
 
 fn heights(key: &Key, file: &HeightsFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
     let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
-    let bytes = meshes.bytes(&key.key("file"), &file.file, "a readable picture")?;
+    let bytes = meshes.bytes(&key.key("file"), &file.file, "a readable picture", BESIDE)?;
     sheet_files::heights(key, file, &bytes, sides, unit)
 }
 
@@ -115,19 +117,31 @@ fn usable_side(key: &Key, side: f64) -> Result<f64, SceneError> {
     key.key("file").number(side, SIDES, "a mesh with a largest side", "scale the mesh in its file")
 }
 
+/// What to do about a file that cannot be read.
+pub const BESIDE: &str = "paths are relative to the scene file";
+const MESH: &str = "paths are relative to the scene file; a mesh may be model:NAME, one of the models folder";
+
+/// By its ending.
+fn is_gltf(file: &str) -> bool {
+    let ending = Path::new(file).extension().map(|ending| ending.to_ascii_lowercase());
+    ending.is_some_and(|ending| ending == "gltf" || ending == "glb")
+}
+
 /// The meshes and pictures read so far, each once, and the hash over the scene and their bytes.
 pub struct Meshes<'a> {
     files: &'a Files,
     hasher: blake3::Hasher,
     read: BTreeMap<String, Arc<Mesh>>,
     pictures: BTreeMap<String, Arc<Picture>>,
+    /// What is left out of them.
+    pub warnings: Vec<String>,
 }
 
 impl<'a> Meshes<'a> {
     pub fn new(files: &'a Files, resolved: &str) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(resolved.as_bytes());
-        Meshes { files, hasher, read: BTreeMap::new(), pictures: BTreeMap::new() }
+        Meshes { files, hasher, read: BTreeMap::new(), pictures: BTreeMap::new(), warnings: Vec::new() }
     }
 
     pub fn hash(&self) -> String {
@@ -138,13 +152,20 @@ impl<'a> Meshes<'a> {
         if let Some(mesh) = self.read.get(file) {
             return Ok(mesh.clone());
         }
+        if is_gltf(file) {
+            let document = self.document(key, file, MESH)?;
+            let mut told = Told::of(&document);
+            let mesh = document.flattened(file, |body| told.body(body)).map_err(|fault| fault.in_scene(key, file))?;
+            self.warnings.extend(told.warnings(file));
+            return Ok(self.read.entry(file.to_owned()).or_insert(Arc::new(mesh)).clone());
+        }
         let bytes = if let Some(name) = file.strip_prefix(models::PREFIX) {
             let bytes = Models::open().read(name);
             let bytes = bytes.map_err(|fault| key.fault(fault.expected, fault.found, fault.remedy))?;
             self.hasher.update(&bytes);
             bytes
         } else {
-            self.bytes(key, file, "a readable OBJ file")?
+            self.bytes(key, file, "a readable OBJ or glTF file", MESH)?
         };
         let mesh = Arc::new(obj::parse(file, &bytes).map_err(|fault| {
             let line = if fault.line == 0 { String::new() } else { format!(":{}", fault.line) };
@@ -159,15 +180,26 @@ impl<'a> Meshes<'a> {
         if let Some(picture) = self.pictures.get(file) {
             return Ok(picture.clone());
         }
-        let bytes = self.bytes(key, file, "a readable picture")?;
+        let bytes = self.bytes(key, file, "a readable picture", BESIDE)?;
         let picture = Arc::new(Picture::read(key, file, &bytes)?);
         self.pictures.insert(file.to_owned(), picture.clone());
         Ok(picture)
     }
 
+    /// A glTF file with its buffers.
+    pub fn document(&mut self, key: &Key, file: &str, remedy: &str) -> Result<Document, SceneError> {
+        let bytes = self.bytes(key, file, "a readable glTF file", remedy)?;
+        let folder = Path::new(file).parent().unwrap_or(Path::new("")).to_owned();
+        let mut beside = |name: &str| {
+            let bytes = self.files.read(&folder.join(name).to_string_lossy())?;
+            self.hasher.update(&bytes);
+            Ok(bytes)
+        };
+        Document::read(&bytes, &mut beside).map_err(|fault| fault.in_scene(key, file))
+    }
+
     /// Of a file beside the scene, which are of the scene from now on.
-    pub fn bytes(&mut self, key: &Key, file: &str, expected: &str) -> Result<Vec<u8>, SceneError> {
-        let remedy = "paths are relative to the scene file; a mesh may be model:NAME, one of the models folder";
+    pub fn bytes(&mut self, key: &Key, file: &str, expected: &str, remedy: &str) -> Result<Vec<u8>, SceneError> {
         let unreadable = |why: String| key.fault(expected, format!("{file}: {why}"), remedy);
         let bytes = self.files.read(file).map_err(unreadable)?;
         self.hasher.update(&bytes);

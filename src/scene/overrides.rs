@@ -36,6 +36,10 @@ pub fn apply<'a>(
         })?;
         let span = Locator::override_span(text, index);
         let Some(path) = resolve(tree, key) else {
+            if let Some((import, brought)) = imported(tree, key) {
+                let remedy = format!("set keys of `imports.{import}`, such as materials, or change the glTF file");
+                return Err(fault("a key of the scene file", format!("`{brought}` of a glTF file"), remedy));
+            }
             if let Some((thing, held, asked)) = other_kind(tree, key) {
                 let remedy =
                     format!("to change its kind, set the whole: --set 'scene.{thing}={{ {asked} = {{ … }} }}'");
@@ -100,6 +104,13 @@ fn kind_in(table: &DeTable) -> Option<&'static str> {
 
 fn child<'t, 'a>(table: Option<&'t DeTable<'a>>, name: &str) -> Option<&'t DeTable<'a>> {
     table?.get(name)?.get_ref().as_table()
+}
+
+/// Where a key means something that an import brings: the import, and the thing.
+fn imported<'k>(tree: &DeTable, key: &'k str) -> Option<(&'k str, &'k str)> {
+    let (_, brought) = key.split_once('.')?;
+    let (import, _) = brought.split_once('/')?;
+    child(child(Some(tree), "imports"), import).map(|_| (import, brought))
 }
 
 /// Where a key asks for another kind than the one its thing is of: the thing, its kind, and the one asked for.

@@ -97,8 +97,8 @@ pub fn refuse_no_coordinates(key: &Key, shape: &Shape, material: &Material) -> R
         return Ok(());
     }
     let found = format!("{}, which has none, for `{}`", mesh.file, texture.picture.file);
-    let remedy = "export it with them (`vt` on every corner), or name a material without a texture";
-    Err(key.key("material").fault("a mesh with texture coordinates", found, remedy))
+    let remedy = "export it with them (`vt` on every corner of an OBJ file, `TEXCOORD_0` in glTF), or name a material without a texture";
+    Err(key.fault("a mesh with texture coordinates", found, remedy))
 }
 
 #[cfg(test)]

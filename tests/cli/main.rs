@@ -3,6 +3,8 @@
 mod bad_options;
 mod bad_scenes;
 mod doctor;
+#[path = "../common/gltf.rs"]
+mod gltf;
 mod lists;
 mod models;
 mod no_room;

@@ -1,6 +1,6 @@
 //! `nephroid scenes`: what ships, what is in one, and its text.
 
-use crate::{nephroid, program};
+use crate::{gltf, nephroid, program};
 
 #[test]
 fn as_csv_they_begin_with_their_names() {
@@ -132,4 +132,30 @@ fn an_open_mesh_of_glass_is_warned_of_with_the_place_of_its_hole() {
     )
     .unwrap();
     assert_eq!(nephroid(&format!("scenes {}", file.display())).ok().err, "");
+}
+
+/// What an import brought has a table of its own, and its things stand in the others.
+#[test]
+fn an_import_is_told_of() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("room.glb"), gltf::small().glb()).unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text = nephroid::scene::Scene::load("diffuse", &[]).unwrap().source.text;
+    std::fs::write(&scene, format!("{text}\n[imports.room]\nfile = \"room.glb\"\nscale = 0.5\n")).unwrap();
+    let told = nephroid(&format!("scenes {}", scene.display())).ok();
+    for words in ["room/Stone", "room/Glass", "room/Lamp", "room/Eye", " import   file       m a unit   objects"] {
+        assert!(told.out.contains(words), "{words}: {}", told.out);
+    }
+    let json = nephroid(&format!("scenes {} --format json", scene.display())).ok().json();
+    assert_eq!(
+        json["imports"],
+        serde_json::json!([{
+            "name": "room", "file": "room.glb", "scale": 0.5, "objects": 1, "triangles": 4, "materials": 1, "lights": 1,
+            "cameras": 1
+        }])
+    );
+    let plan = format!("plan {} --camera", scene.display());
+    nephroid(&format!("{plan} room/Eye")).ok();
+    let missing = nephroid(&format!("{plan} room/Eys"));
+    assert!(missing.code == Some(2) && missing.err.contains("did you mean `room/Eye`?"), "{}", missing.err);
 }

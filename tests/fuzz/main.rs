@@ -7,6 +7,8 @@
 //! * `NEPHROID_FUZZ_SEED`: which inputs (1).
 //! * `NEPHROID_FUZZ_INPUT`: one file to read, by its ending.
 
+#[path = "../common/gltf.rs"]
+mod gltf;
 mod mutate;
 #[path = "../common/random.rs"]
 #[allow(dead_code)] // directions are for others
@@ -101,7 +103,7 @@ struct Tally {
 /// Damages and reads input `number` of a reader.
 fn one(reader: &'static Reader, seeds: &[Vec<u8>], seed: u64, number: u64, tally: &mut Tally) {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ number);
-    let input = mutate::damaged(&mut random, seeds, reader.text);
+    let input = mutate::damaged(&mut random, seeds, reader.parts);
     let path = folder().join(format!("input.{}", reader.ending));
     std::fs::write(&path, &input).expect("the input is written");
     let start = Instant::now();

@@ -1,6 +1,19 @@
 //! Damage to files: the same seed does the same damage.
 
-use crate::random::Random;
+use serde_json::Value;
+
+use crate::{gltf::glb, random::Random};
+
+/// What a file is made of.
+#[derive(Clone, Copy)]
+pub enum Parts {
+    /// Words and numbers of a text.
+    Words,
+    /// Bytes and the numbers that they spell.
+    Numbers,
+    /// Values of JSON, which stays JSON; that of a GLB with its chunks in order.
+    Values,
+}
 
 /// Numbers at which readers have been known to stumble.
 const NUMBERS: [&str; 24] = [
@@ -59,7 +72,7 @@ const HEADER: usize = 1024;
 const MOST_COPIES: usize = 300;
 
 /// A damaged file, of one of the sound ones and passages of the others.
-pub fn damaged(random: &mut Random, seeds: &[Vec<u8>], text: bool) -> Vec<u8> {
+pub fn damaged(random: &mut Random, seeds: &[Vec<u8>], parts: Parts) -> Vec<u8> {
     if random.below(ONE_IN) == 0 {
         let length = random.below(4096);
         return (0..length).map(|_| random.below(256) as u8).collect();
@@ -70,9 +83,10 @@ pub fn damaged(random: &mut Random, seeds: &[Vec<u8>], text: bool) -> Vec<u8> {
             break;
         }
         let other = &seeds[random.below(seeds.len())];
-        match (text, random.below(10)) {
-            (true, 0..7) => damage_words(random, &mut bytes, other),
-            (false, 0..7) => damage_numbers(random, &mut bytes),
+        match (parts, random.below(10)) {
+            (Parts::Words, 0..7) | (Parts::Values, 0) => damage_words(random, &mut bytes, other),
+            (Parts::Numbers, 0..7) | (Parts::Values, 1) => damage_numbers(random, &mut bytes),
+            (Parts::Values, 2..9) => damage_values(random, &mut bytes),
             _ => damage_bytes(random, &mut bytes, other),
         }
     }
@@ -175,5 +189,72 @@ fn damage_bytes(random: &mut Random, bytes: &mut Vec<u8>, other: &[u8]) {
             let passage = other[from..(from + 1 + random.below(256)).min(other.len())].to_vec();
             bytes.splice(at..at, passage);
         }
+    }
+}
+
+/// Changes a value of the JSON, and leaves what no longer is any.
+fn damage_values(random: &mut Random, bytes: &mut Vec<u8>) {
+    const HEAD: usize = 20;
+    let chunk = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?) as usize);
+    let boxed = bytes.starts_with(b"glTF");
+    let range = if boxed { HEAD..HEAD.saturating_add(chunk(12).unwrap_or(0)) } else { 0..bytes.len() };
+    let Some(mut json) = bytes.get(range.clone()).and_then(|json| serde_json::from_slice(json).ok()) else { return };
+    damage_value(random, &mut json);
+    *bytes = if boxed {
+        let rest = bytes.get(range.end + 8..).unwrap_or_default().to_vec();
+        glb(&[(b"JSON", json.to_string().as_bytes()), (b"BIN\0", &rest)])
+    } else {
+        serde_json::to_vec_pretty(&json).unwrap_or_default()
+    };
+}
+
+/// Puts a number or something else in the place of one value; takes it out, or repeats it.
+fn damage_value(random: &mut Random, json: &mut Value) {
+    let mut all = Vec::new();
+    pointers(json, &mut String::new(), &mut all);
+    let numbers: Vec<&String> = all.iter().filter(|at| json.pointer(at).is_some_and(Value::is_number)).collect();
+    let any = all[random.below(all.len())].clone();
+    let at =
+        if numbers.is_empty() || random.below(3) == 0 { any } else { numbers[random.below(numbers.len())].clone() };
+    let other = json.pointer(&all[random.below(all.len())]).cloned().unwrap_or_default();
+    let Some((parent, name)) = at.rsplit_once('/') else { return };
+    let new = match random.below(8) {
+        0..3 => serde_json::from_str(choose(random, &NUMBERS)).unwrap_or_default(),
+        3..5 => Value::from(random.below(8)),
+        5 => other,
+        6 => Value::from(""),
+        _ => return take_out_or_repeat(random, json, parent, name),
+    };
+    if let Some(slot) = json.pointer_mut(&at) {
+        *slot = new;
+    }
+}
+
+fn take_out_or_repeat(random: &mut Random, json: &mut Value, parent: &str, name: &str) {
+    match json.pointer_mut(parent) {
+        Some(Value::Object(keys)) => drop(keys.remove(name)),
+        Some(Value::Array(items)) => {
+            let at = name.parse().unwrap_or(0);
+            let copies = random.below(2) * (1 + random.below(MOST_COPIES));
+            let item = items.remove(at);
+            items.splice(at..at, std::iter::repeat_n(item, copies));
+        }
+        _ => {}
+    }
+}
+
+/// Pointers to every value, from the outermost in.
+fn pointers(value: &Value, at: &mut String, all: &mut Vec<String>) {
+    all.push(at.clone());
+    let length = at.len();
+    let mut below = |name: &str, value: &Value| {
+        *at += &format!("/{}", name.replace('~', "~0").replace('/', "~1"));
+        pointers(value, at, all);
+        at.truncate(length);
+    };
+    match value {
+        Value::Array(items) => items.iter().enumerate().for_each(|(k, value)| below(&k.to_string(), value)),
+        Value::Object(keys) => keys.iter().for_each(|(name, value)| below(name, value)),
+        _ => {}
     }
 }

@@ -13,13 +13,19 @@ use nephroid::{
     scene::Scene,
     settings::Settings,
 };
+use serde_json::json;
+
+use crate::{
+    gltf::{self, Gltf},
+    mutate::Parts,
+};
 
 /// One reader, and what it is given.
 pub struct Reader {
     /// The ending of its files, by which `NEPHROID_FUZZ_INPUT` finds it too.
     pub ending: &'static str,
-    /// Words and numbers are changed, or bytes and the numbers that they spell.
-    pub text: bool,
+    /// What of them is changed, beside bytes.
+    pub parts: Parts,
     /// Sound files to begin with; each must be read.
     pub seeds: fn() -> Vec<Vec<u8>>,
     /// Bytes of memory that reading may hold at a time, for each byte of the file, beside [`ROOM`].
@@ -40,10 +46,10 @@ pub enum Found {
     Other,
 }
 
-pub const READERS: [Reader; 3] = [
+pub const READERS: [Reader; 5] = [
     Reader {
         ending: "toml",
-        text: true,
+        parts: Parts::Words,
         seeds: || Scene::shipped().map(|(name, _)| text_of(name).into_bytes()).collect(),
         // The tree of the text is held three times (as parsed, as resolved, as text again), some 150 bytes a short key.
         multiple: 1000,
@@ -54,7 +60,7 @@ pub const READERS: [Reader; 3] = [
     },
     Reader {
         ending: "obj",
-        text: true,
+        parts: Parts::Words,
         seeds: || vec![small_mesh(), small_mesh(), BUNNY.to_vec()],
         // `f 1 1 1` is eight bytes; its corners are a list of 128, its triangle 12, its vertices' places some 100 more.
         multiple: 100,
@@ -71,8 +77,22 @@ pub const READERS: [Reader; 3] = [
         },
     },
     Reader {
+        ending: "gltf",
+        parts: Parts::Values,
+        seeds: || gltf_files().into_iter().map(|file| pretty(&file.embedded()).into_bytes()).collect(),
+        multiple: OF_GLTF,
+        read: read_gltf,
+    },
+    Reader {
+        ending: "glb",
+        parts: Parts::Values,
+        seeds: || gltf_files().into_iter().map(|file| file.glb()).collect(),
+        multiple: OF_GLTF,
+        read: read_gltf,
+    },
+    Reader {
         ending: "exr",
-        text: false,
+        parts: Parts::Numbers,
         seeds: pictures,
         // A byte may hold 1400 of pixels; these are held once as planes, and twice while they are joined.
         multiple: 4200,
@@ -113,6 +133,72 @@ quad = { center = [0, -1, 0], u = [2, 0, 0], v = [0, 0, -2] }
 [objects.thing]
 material = "glass"
 "#;
+
+/// A byte may ask for a triangle: of 12 bytes, with three vertices of 24 of its own, held twice while they grow; eleven for an
+/// object and a warning of its holes. The worst that was made, 100,000 nodes of one triangle of glass, held 300.
+const OF_GLTF: usize = 600;
+
+/// Both ways: as an object's mesh, and imported.
+fn read_gltf(path: &Path) -> Result<Found, String> {
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    let mesh = format!("mesh = {{ file = \"{file}\", fit = 1.0, center = [0, 0, 0] }}\n");
+    let import = format!("sphere = {{ center = [0, 0, 0], radius = 0.5 }}\n[imports.room]\nfile = \"{file}\"\n");
+    let scene = path.with_extension("gltf.toml");
+    let mut found = Err("no scene".to_owned());
+    for way in [mesh, import] {
+        std::fs::write(&scene, format!("{AROUND_A_MESH}{way}")).expect("a scene is written");
+        let read = Scene::load(&scene.to_string_lossy(), &[]).map_err(|error| error.to_string());
+        found = read.map(|scene| Found::Scene(Box::new(scene)));
+    }
+    found
+}
+
+fn pretty(json: &str) -> String {
+    let json: serde_json::Value = serde_json::from_str(json).expect("JSON");
+    serde_json::to_string_pretty(&json).expect("JSON")
+}
+
+/// Each kind of thing once; every way of storing a number, in a tree of nodes; and a body of some size.
+fn gltf_files() -> Vec<Gltf> {
+    let mut ways = gltf::small();
+    let bytes: Vec<u8> = gltf::CORNERS.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let base = ways.view(&bytes);
+    let indices = ways.view(&[1, 3]);
+    let sparse = json!({ "count": 2, "indices": { "bufferView": indices, "componentType": 5121 }, "values": { "bufferView": base } });
+    let sparse = json!({ "bufferView": base, "componentType": 5126, "type": "VEC3", "count": 4, "sparse": sparse });
+    let sparse = ways.push("accessors", sparse);
+    let small = ways.accessor(gltf::U8, "SCALAR", 6, &[0, 1, 2, 3, 1, 0]);
+    let shares = ways.accessor(gltf::U16, "VEC3", 4, &[7; 24]);
+    ways.json["accessors"][shares]["normalized"] = json!(true);
+    ways.json["meshes"][0]["primitives"].as_array_mut().expect("a list").extend([
+        json!({ "attributes": { "POSITION": sparse }, "indices": small, "mode": 5 }),
+        json!({ "attributes": { "POSITION": shares }, "mode": 6 }),
+        json!({ "attributes": { "POSITION": 0 }, "mode": 1 }),
+    ]);
+    let matrix = json!([0, 2, 0, 0, -2, 0, 0, 0, 0, 0, -2, 0, 1, 2, 3, 1]);
+    let inner = ways.push("nodes", json!({ "matrix": matrix, "mesh": 0 }));
+    ways.node(json!({ "children": [inner], "scale": [1, 0.5, -2] }));
+    let sun = ways.light(json!({ "type": "directional", "color": [1, 0.5, 0], "range": 4 }));
+    ways.node(json!({ "extensions": { "KHR_lights_punctual": { "light": sun } } }));
+    ways.push("materials", json!({ "pbrMetallicRoughness": { "metallicFactor": 1, "roughnessFactor": 0.25 } }));
+    vec![gltf::small(), ways, ball()]
+}
+
+/// A sphere of 32 by 16 facets.
+fn ball() -> Gltf {
+    let mut file = Gltf::new();
+    let at = |k: u16| {
+        let (around, down) = (f32::from(k % 32) * 0.196_35, f32::from(k / 32) * 0.209_44);
+        [around.cos() * down.sin(), down.cos(), around.sin() * down.sin()]
+    };
+    let rows: Vec<[f32; 3]> = (0..512).map(at).collect();
+    let quad = |k: u16| [k, k + 1, k + 33, k, k + 33, k + 32];
+    let corners: Vec<u16> = (0..479).flat_map(quad).collect();
+    let (positions, normals, indices) = (file.vectors(&rows), file.vectors(&rows), file.shorts(&corners));
+    let mesh = file.mesh(json!({ "attributes": { "POSITION": positions, "NORMAL": normals }, "indices": indices }));
+    file.node(json!({ "mesh": mesh }));
+    file
+}
 
 /// Each way of writing a corner, counted from both ends; a polygon; what is passed over.
 fn small_mesh() -> Vec<u8> {

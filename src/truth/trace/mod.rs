@@ -169,7 +169,9 @@ fn primitives(shape: &Shape) -> Vec<Primitive> {
         Shape::Mesh { mesh, to_world } => {
             let to_normal = to_world.matrix3.inverse().transpose();
             let point = |i: u32| to_world.transform_point3(mesh.positions[i as usize].as_dvec3());
-            let normal = |i: u32| (to_normal * mesh.normals[i as usize].as_dvec3()).normalize_or_zero();
+            // Not made unit ones here: between vertices the mesh's own normals are mixed, and the mix is mapped. Where the map
+            // stretches, the mix of mapped unit normals would be another surface's.
+            let normal = |i: u32| to_normal * mesh.normals[i as usize].as_dvec3();
             mesh.triangles.iter().map(|t| Primitive::Triangle(t.map(point), t.map(normal))).collect()
         }
     }
