@@ -32,16 +32,31 @@ pub struct Texture {
     pub repeat: [f64; 2],
 }
 
+/// What is wrong with a picture, in the parts of a scene's error.
+#[derive(Debug)]
+pub struct PictureFault {
+    pub expected: String,
+    pub found: String,
+    pub remedy: &'static str,
+}
+
 impl Picture {
-    /// From a file's bytes: PNG, whose values are sRGB's, or EXR, whose values are linear.
+    /// From a file's bytes.
     pub fn read(key: &Key, file: &str, bytes: &[u8]) -> Result<Self, SceneError> {
+        Self::decode(file, bytes, true).map_err(|wrong| key.fault(wrong.expected, wrong.found, wrong.remedy))
+    }
+
+    /// PNG, whose values are sRGB's, or EXR, whose values are linear. `opaque` refuses transparency, which else is passed over.
+    pub fn decode(file: &str, bytes: &[u8], opaque: bool) -> Result<Self, PictureFault> {
         let remedy = "save it again as PNG of 8 or 16 bits, or as EXR, grey or red, green and blue";
-        let fault = |found: String, remedy: &str| key.fault("an opaque picture of colours from 0 to 1", found, remedy);
+        let expected = || "an opaque picture of colours from 0 to 1".to_owned();
+        let fault = |found: String, remedy: &'static str| PictureFault { expected: expected(), found, remedy };
         let raster = Raster::read(bytes).map_err(|error| fault(format!("{file}: {error}"), remedy))?;
         let count = raster.width * raster.height;
         if count > MOST_PIXELS {
             let found = format!("{file}, which has {count} pixels");
-            return Err(key.fault(format!("at most {MOST_PIXELS} pixels"), found, "save it smaller"));
+            let expected = format!("at most {MOST_PIXELS} pixels");
+            return Err(PictureFault { expected, found, remedy: "save it smaller" });
         }
         let value = |sample: f32| if raster.linear { sample } else { decoded(sample) };
         let mut pixels = Vec::with_capacity(count);
@@ -57,7 +72,7 @@ impl Picture {
                 [red, green, blue, alpha] => ([red, green, blue], alpha),
                 _ => return Err(fault(format!("{file}, which has {} channels", raster.channels), remedy)),
             };
-            if opacity != 1.0 {
+            if opaque && opacity != 1.0 {
                 let remedy = "save it without transparency: a surface is there or not";
                 return Err(fault(of("lets light through".to_owned()), remedy));
             }

@@ -72,7 +72,7 @@ fn materials_become_ours_and_what_they_lose_is_told() {
                 "what of it is metal (metallic 0.1)",
                 "its roughness 0.5",
                 "the tint of its surface",
-                "its transmission texture (none is read yet)",
+                "its transmission texture (not read)",
                 "\"KHR_materials_dispersion\"",
             ],
         ),
@@ -84,11 +84,11 @@ fn materials_become_ours_and_what_they_lose_is_told() {
             &[],
         ),
         (
-            json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0, "baseColorFactor": [1, 1, 1, 0.5] },
+            json!({ "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": 0 }, "metallicFactor": 0, "baseColorFactor": [1, 1, 1, 0.5] },
             "normalTexture": { "index": 1 }, "emissiveFactor": [0, 1, 0], "alphaMode": "BLEND" }),
             diffuse([1.0; 3]),
             &[
-                "its base colour texture (none is read yet)",
+                "its metallic and roughness texture (not read)",
                 "its normal texture",
                 "its transparency (alpha 0.5)",
                 "the light that it gives",

@@ -15,6 +15,7 @@ mod looks;
 mod malformed;
 mod nodes;
 mod sound;
+mod textures;
 mod twins;
 
 use made::Gltf;

@@ -167,6 +167,18 @@ impl Document {
         })
     }
 
+    /// A part of a buffer; `path` names what names it.
+    pub(super) fn bytes_of(&self, view: usize, path: &str) -> Result<&[u8], GltfFault> {
+        let written = named(&self.json.buffer_views, view, path, "buffer views")?;
+        let view_path = format!("bufferViews[{view}]");
+        let buffer = named(&self.buffers, written.buffer, &format!("{view_path}.buffer"), "buffers")?;
+        let end = written.byte_offset.checked_add(written.byte_length);
+        end.and_then(|end| buffer.get(written.byte_offset..end)).ok_or_else(|| {
+            let found = format!("{} from byte {} on", written.byte_length, written.byte_offset);
+            fault(view_path, format!("a part of the buffer's {} bytes", buffer.len()), found, EXPORT)
+        })
+    }
+
     fn sparse(&self, path: &str, written: &json::Sparse, of: usize, size: usize) -> Result<Sparse<'_>, GltfFault> {
         let (indices, values) = (&written.indices, &written.values);
         let at = format!("{path}.sparse.indices");
@@ -207,14 +219,9 @@ impl Document {
         size: usize,
         may_stride: bool,
     ) -> Result<Elements<'_>, GltfFault> {
-        let written = named(&self.json.buffer_views, view, view_path, "buffer views")?;
+        let bytes = self.bytes_of(view, view_path)?;
+        let written = &self.json.buffer_views[view];
         let view_path = format!("bufferViews[{view}]");
-        let buffer = named(&self.buffers, written.buffer, &format!("{view_path}.buffer"), "buffers")?;
-        let end = written.byte_offset.checked_add(written.byte_length);
-        let Some(bytes) = end.and_then(|end| buffer.get(written.byte_offset..end)) else {
-            let found = format!("{} from byte {} on", written.byte_length, written.byte_offset);
-            return Err(fault(view_path, format!("a part of the buffer's {} bytes", buffer.len()), found, EXPORT));
-        };
         let stride = written.byte_stride.filter(|_| may_stride).unwrap_or(size);
         if stride < size {
             let expected = format!("a stride of at least {size} bytes, the size of an element");

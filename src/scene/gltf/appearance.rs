@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 
 use glam::{DAffine3, DVec3};
 
-use super::{Document, GltfFault, fault, json, named, names};
+use super::{Document, GltfFault, fault, json, named, names, textures::textured};
 use crate::scene::{Beam, Camera, CameraKind, LightKind, MaterialKind};
 
 /// Metals are mirrors from here on, others from here down: there is nothing between the two.
@@ -93,24 +93,32 @@ pub fn look(document: &Document, index: Option<usize>, scale: f64) -> Result<Loo
     };
     lacks(written.alpha_mode != "OPAQUE" && alpha < 1.0, format!("its transparency (alpha {alpha})"));
     lacks(written.emissive_factor != [0.0; 3], "the light that it gives".to_owned());
+    let kind = match (kind, &pbr.base_color_texture) {
+        (MaterialKind::Diffuse { albedo, .. }, Some(info)) => {
+            let (kind, lost) = textured(document, albedo, info, &of_pbr("baseColorTexture"))?;
+            missing.extend(lost);
+            kind
+        }
+        (kind, Some(_)) => {
+            missing.push("its base colour texture (diffuse surfaces alone show one)".to_owned());
+            kind
+        }
+        (kind, None) => kind,
+    };
     missing.extend(written.extensions.others.keys().map(|name| format!("{name:?}")));
     Ok(Look { kind, missing })
 }
 
-/// Those of a material, none of which is read.
+/// Those of a material that are not read.
 fn textures(written: &json::Material) -> Vec<String> {
     let (pbr, extensions) = (&written.pbr_metallic_roughness, &written.extensions);
     let all = [
-        ("base colour", pbr.base_color_texture.is_some()),
         ("metallic and roughness", pbr.metallic_roughness_texture.is_some()),
         ("normal", written.normal_texture.is_some()),
         ("emission", written.emissive_texture.is_some()),
         ("transmission", extensions.transmission.as_ref().is_some_and(|t| t.transmission_texture.is_some())),
     ];
-    all.into_iter()
-        .filter(|(_, there)| *there)
-        .map(|(name, _)| format!("its {name} texture (none is read yet)"))
-        .collect()
+    all.into_iter().filter(|(_, there)| *there).map(|(name, _)| format!("its {name} texture (not read)")).collect()
 }
 
 /// −ln(colour)/distance of each band, 1/m.

@@ -131,7 +131,7 @@ pub fn buffers(buffers: &[Buffer], binary: Option<&[u8]>, beside: &mut ReadBesid
 }
 
 /// Of `data:…;base64,…`.
-fn data(path: &str, uri: &str) -> Result<Vec<u8>, GltfFault> {
+pub fn data(path: &str, uri: &str) -> Result<Vec<u8>, GltfFault> {
     let wrong = |found: String| fault(format!("{path}.uri"), "a buffer as `data:…;base64,…`", found, EXPORT);
     let (kind, text) = uri.split_once(',').ok_or_else(|| wrong("no comma".to_owned()))?;
     if !kind.ends_with(";base64") {
@@ -141,7 +141,7 @@ fn data(path: &str, uri: &str) -> Result<Vec<u8>, GltfFault> {
 }
 
 /// The path of a file beside the glTF file or below it: what somebody made elsewhere names nothing else here.
-fn local(path: &str, uri: &str) -> Result<String, GltfFault> {
+pub fn local(path: &str, uri: &str) -> Result<String, GltfFault> {
     let refused = |found: &str| {
         fault(format!("{path}.uri"), "a file beside the glTF file or below it", format!("{found:?}"), REMEDY_BUFFER)
     };

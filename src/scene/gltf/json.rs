@@ -31,10 +31,66 @@ pub struct Root {
     pub buffer_views: Vec<BufferView>,
     pub buffers: Vec<Buffer>,
     pub materials: Vec<Material>,
+    pub textures: Vec<Texture>,
+    pub images: Vec<Image>,
+    pub samplers: Vec<Sampler>,
     pub cameras: Vec<Camera>,
     pub animations: Vec<IgnoredAny>,
     pub extensions_used: Vec<String>,
     pub extensions: RootExtensions,
+}
+
+#[derive(Deserialize)]
+pub struct Texture {
+    pub source: Option<usize>,
+    pub sampler: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Image {
+    pub uri: Option<String>,
+    pub buffer_view: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Sampler {
+    #[serde(default = "repeats")]
+    pub wrap_s: u32,
+    #[serde(default = "repeats")]
+    pub wrap_t: u32,
+}
+
+fn repeats() -> u32 {
+    10497
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct TextureInfo {
+    pub index: usize,
+    #[serde(default)]
+    pub tex_coord: usize,
+    #[serde(default)]
+    pub extensions: TextureExtensions,
+}
+
+#[derive(Deserialize, Default)]
+pub struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub transform: Option<TextureTransform>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct TextureTransform {
+    #[serde(default)]
+    pub offset: [f64; 2],
+    #[serde(default)]
+    pub rotation: f64,
+    pub scale: Option<[f64; 2]>,
+    pub tex_coord: Option<usize>,
 }
 
 #[derive(Deserialize, Default)]
@@ -196,7 +252,7 @@ impl Default for Material {
 #[serde(rename_all = "camelCase", default)]
 pub struct Pbr {
     pub base_color_factor: [f64; 4],
-    pub base_color_texture: Option<IgnoredAny>,
+    pub base_color_texture: Option<TextureInfo>,
     pub metallic_factor: f64,
     pub roughness_factor: f64,
     pub metallic_roughness_texture: Option<IgnoredAny>,

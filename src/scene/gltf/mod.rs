@@ -8,7 +8,7 @@
 //! Work and memory are bounded by the file: it may ask for as many triangles and sparse elements as it has bytes,
 //! buffers included. Every triangle takes a byte at least, so that only a file that reads the same data again and again
 //! meets the bound.
-use std::{cell::Cell, rc::Rc};
+use std::{cell::Cell, collections::BTreeMap, rc::Rc};
 
 mod accessor;
 mod appearance;
@@ -18,6 +18,7 @@ mod geometry;
 mod json;
 mod names;
 mod nodes;
+mod textures;
 
 pub use appearance::{Look, camera, light, look};
 pub use container::READ;
@@ -67,6 +68,7 @@ pub struct Document {
     /// Bytes of the file and of its buffers.
     pub size: usize,
     buffers: Vec<Rc<[u8]>>,
+    pictures: textures::Pictures,
     /// Triangles and sparse elements that may still be read.
     left: Cell<usize>,
 }
@@ -81,7 +83,9 @@ impl Document {
         distinct.sort_by_key(|buffer| Rc::as_ptr(buffer).cast::<u8>());
         distinct.dedup_by(|a, b| Rc::ptr_eq(a, b));
         let size = bytes.len() + distinct.iter().map(|buffer| buffer.len()).sum::<usize>();
-        Ok(Document { json, size, buffers, left: Cell::new(size) })
+        let mut document = Document { json, size, buffers, pictures: BTreeMap::new(), left: Cell::new(size) };
+        textures::pictures(&mut document, beside)?;
+        Ok(document)
     }
 
     /// Takes from what may still be read.
