@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use common::{
     Binder, Probe, gpu,
-    picture::{Picture, Pixels, job_of, picture, rewritten, worst},
+    picture::{Picture, Pixels, job_of, picture, png, rewritten, worst},
     random::Random,
 };
 use glam::DVec3;
@@ -17,21 +17,9 @@ use nephroid::{
     scene::{LightKind, Scene},
     truth::{Estimator, Goal, Run, Task, trace::Space},
 };
-use png::{BitDepth, ColorType, Encoder};
 
 const SIDE: u32 = 64;
 const SETTINGS: [(&str, &str); 2] = [("light.side", "512"), ("maps.side", "256")];
-
-fn png(width: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, pixels.len() as u32 / width);
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(BitDepth::Eight);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&pixels.concat()).unwrap();
-    writer.finish().unwrap();
-    bytes
-}
 
 /// Smooth enough that a map's texel does not see its pixels, and of other colours at each corner.
 fn smooth() -> Vec<u8> {

@@ -4,7 +4,7 @@ mod common;
 
 use common::{
     Binder, Probe, gpu,
-    picture::{job_of, picture, rewritten, scene},
+    picture::{job_of, picture, png, rewritten, scene},
     random::Random,
 };
 use glam::{DVec2, DVec3};
@@ -12,7 +12,6 @@ use nephroid::{
     passes::{accel::SceneArrays, scene::SceneBuffers},
     scene::{MaterialKind, Scene, Shape},
 };
-use png::{BitDepth, ColorType, Encoder};
 
 /// Roundings of coordinates of up to the repeats, 2⁻²⁴ each, over a pixel of 1/16 and a step between pixels of 1; three mixes.
 const LOOK_UP: f64 = 4.0 * 16.0 * 8.0 / 16_777_216.0;
@@ -20,17 +19,6 @@ const LOOK_UP: f64 = 4.0 * 16.0 * 8.0 / 16_777_216.0;
 const ROUNDING: f64 = 1e-6;
 
 const SIDES: [(&str, &str); 3] = [("light.side", "64"), ("maps.side", "64"), ("eye.samples", "1")];
-
-fn png(width: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, pixels.len() as u32 / width);
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(BitDepth::Eight);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&pixels.concat()).unwrap();
-    writer.finish().unwrap();
-    bytes
-}
 
 fn linear(byte: u8) -> f64 {
     let value = f64::from(byte) / 255.0;

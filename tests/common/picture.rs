@@ -13,12 +13,26 @@ use nephroid::{
     settings::Settings,
 };
 
+use png::{BitDepth, ColorType, Encoder};
+
 use super::assert_quiet;
 
 /// Pixels that see the region when each is to be one texel of the caustic map: the map's side without its margin, half
 /// a splat of three texels and one texel more on each side.
 pub const fn pixels_of_map(side: u32) -> u32 {
     side - 5
+}
+
+/// A PNG of eight bits a band, rows from the top.
+pub fn png(width: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width, pixels.len() as u32 / width);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&pixels.concat()).unwrap();
+    writer.finish().unwrap();
+    bytes
 }
 
 /// A shipped scene with values changed.
