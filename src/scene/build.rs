@@ -5,7 +5,7 @@ use std::{
 };
 
 use super::{
-    Camera, CameraKind, Light, Material, MaterialKind, Object, PathClassError, Scene, Source, Texture, edges,
+    Camera, CameraKind, Light, Material, MaterialKind, Object, PathClassError, Scene, Shape, Source, Texture, edges,
     error::SceneError,
     file::{CameraFile, Colour, DiffuseFile, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
     imports::imports,
@@ -42,7 +42,9 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
     let mut objects = each(root, "objects", &file.objects, |key, name, written| {
         object(key, name, written, unit, &materials, &mut meshes)
     })?;
-    objects.extend(resolved(imported.objects, &materials));
+    let brought: Vec<Object> = resolved(imported.objects, &materials).collect();
+    let unplaced: Vec<String> = brought.iter().filter_map(|object| unplaced(object, &materials)).collect();
+    objects.extend(brought);
     objects.sort_by(|a, b| a.name.cmp(&b.name));
     lights.extend(imported.lights);
     lights.sort_by(|a, b| a.name.cmp(&b.name));
@@ -64,7 +66,7 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
             "0 is plain, each EV doubles",
         )?,
         cameras: cameras(&root.key("cameras"), &file.cameras, unit)?,
-        warnings: [imported.warnings, meshes.warnings, edges::warnings(&objects, &materials)].concat(),
+        warnings: [imported.warnings, unplaced, meshes.warnings, edges::warnings(&objects, &materials)].concat(),
         imports: imported.imports,
         objects,
         materials,
@@ -106,6 +108,14 @@ fn motion(
 fn resolved(objects: Vec<(Object, String)>, materials: &[Material]) -> impl Iterator<Item = Object> {
     let index: HashMap<&str, usize> = materials.iter().enumerate().map(|(k, m)| (m.name.as_str(), k)).collect();
     objects.into_iter().map(move |(object, name)| Object { material: index[name.as_str()], ..object })
+}
+
+/// What must be known of an imported mesh that has a texture, its own or the scene's, and no texture coordinates.
+fn unplaced(object: &Object, materials: &[Material]) -> Option<String> {
+    let textured = matches!(materials[object.material].kind, MaterialKind::Diffuse { texture: Some(_), .. });
+    let Shape::Mesh { mesh, .. } = &object.shape else { return None };
+    (textured && mesh.coordinates.is_empty())
+        .then(|| format!("`{}` has a texture and no texture coordinates: it shows one place of it", object.name))
 }
 
 /// One thing for each table under `kind`, in the order of their names.

@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 
 use super::{Canonical, Shape, error::SceneError, file::ObjectFile, locate::Key, object, sheet_files::WaveSheet};
 
-/// Lengths of water that a wave passes in a second, m: float64 still tells its phase then.
+/// Metres a second. Of what is fast, short and late float64 no longer tells the phase: beyond 10¹⁵ waves it is 0.
 const SPEEDS: std::ops::RangeInclusive<f64> = -1e9..=1e9;
 
 /// How a surface flows in its place.

@@ -9,8 +9,7 @@ use super::{Beam, Picture, error::SceneError, file::Floats, locate::Key};
 const PARALLEL: f64 = 1e-6;
 /// Widest half angle, degrees: beyond it the picture's middle would be a point beside its rim.
 const WIDEST: f64 = 85.0;
-/// Points of the picture along each side by which its flux is summed: sixteen of them a pixel of a picture of 256², and of
-/// one of 1024² each pixel's middle.
+/// Points along each side by which a picture's flux is summed, at least: as many in each pixel, of a large one its middle.
 const POINTS: usize = 1024;
 
 /// A picture's rectangle across a beam, its corners on the outer cone.
@@ -84,15 +83,16 @@ impl Slide {
         let [right, up] = self.axes(beam.axis);
         let [w, h] = self.half;
         let (x, y) = (right * w * w, up * h * h); // across the picture, a unit along the axis
-        let cell = 4.0 * w * h / (POINTS * POINTS) as f64;
-        let at = |k: usize| 2.0 * (k as f64 + 0.5) / POINTS as f64 - 1.0;
+        let [columns, rows] = [self.picture.width, self.picture.height].map(|side| side * POINTS.div_ceil(side));
+        let cell = 4.0 * w * h / (columns * rows) as f64;
+        let at = |k: usize, count: usize| 2.0 * (k as f64 + 0.5) / count as f64 - 1.0;
         let point = |k: usize| {
-            let (u, v) = (at(k % POINTS), at(k / POINTS));
+            let (u, v) = (at(k % columns, columns), at(k / columns, rows));
             let way = beam.axis + u * x + v * y;
             let far = way.length();
             self.at(u, v) * (beam.share(way / far) * cell / (far * far * far))
         };
-        (0..POINTS * POINTS).map(point).sum()
+        (0..columns * rows).map(point).sum()
     }
 }
 
@@ -133,6 +133,17 @@ mod tests {
         let (slide, beam) = slide(vec![[1.0, 0.5, 0.0]; 6], 3);
         let exact = texel_solid_angle(-0.4, -0.3, 0.4, 0.3);
         assert!((slide.solid_angle(&beam) - exact * DVec3::new(1.0, 0.5, 0.0)).length() < MIDPOINT * exact);
+    }
+
+    /// One column of three is white: a third of the rectangle, whatever the number of points.
+    #[test]
+    fn a_large_picture_is_summed_pixel_by_pixel() {
+        for lit in 0..3 {
+            let pixels = (0..3072).map(|x| if x % 3 == lit { [1.0; 3] } else { [0.0; 3] }).collect();
+            let (slide, beam) = slide(pixels, 3072);
+            let exact = texel_solid_angle(-0.4, -0.3, 0.4, 0.3) / 3.0;
+            assert!((slide.solid_angle(&beam).x - exact).abs() < 1e-3 * exact, "{lit}");
+        }
     }
 
     #[test]

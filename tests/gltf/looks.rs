@@ -43,7 +43,7 @@ fn materials_become_ours_and_what_they_lose_is_told() {
             &["what of it is no metal (metallic 0.6)", "its roughness 0.25"],
         ),
         // Glass: without a thickness the file means a wall.
-        (clear(json!({})), glass([0.0; 3]), &["being a wall without thickness (it is solid)"]),
+        (clear(json!({})), glass([0.0; 3]), &["the thinness of a wall (no thickness is given: it is solid)"]),
         (
             clear(json!({ "KHR_materials_ior": { "ior": 1.33 }, "KHR_materials_volume": { "thicknessFactor": 0.5 } })),
             MaterialKind::Dielectric { ior: [1.33; 3], absorption: [0.0; 3] },

@@ -107,7 +107,7 @@ fn a_picture_that_cannot_be_shown_as_it_is_meant_is_told_of() {
     let mut unplaced = textured(json!({ "index": 0 }), plain, &picture());
     unplaced.json["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("TEXCOORD_0");
     let scene = imported("room.glb", unplaced.glb(), "").unwrap();
-    assert!(scene.warnings.iter().any(|w| w.contains("1 mesh has a texture and no texture coordinates")));
+    assert!(scene.warnings.iter().any(|w| w.contains("`room/Stone` has a texture and no texture coordinates")));
 }
 
 #[test]

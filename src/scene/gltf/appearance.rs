@@ -80,7 +80,7 @@ pub fn look(document: &Document, index: Option<usize>, scale: f64) -> Result<Loo
         lacks(roughness > 0.0, format!("its roughness {roughness}"));
         lacks(colour != [1.0; 3], "the tint of its surface (base colour)".to_owned());
         let thick = written.extensions.volume.as_ref().is_some_and(|volume| volume.thickness_factor > 0.0);
-        lacks(!thick, "being a wall without thickness (it is solid)".to_owned());
+        lacks(!thick, "the thinness of a wall (no thickness is given: it is solid)".to_owned());
         let ior = written.extensions.ior.as_ref().and_then(|ior| ior.ior).unwrap_or(IOR);
         within(of_extension("ior"), ior, 1.0..=10.0, "an index of refraction")?;
         let absorption = absorption(&of_extension("volume"), written.extensions.volume.as_ref(), scale)?;
@@ -153,9 +153,10 @@ pub fn light(
         within(format!("{path}.intensity"), band, STRENGTHS, "a strength in W/m² or W/sr")?;
     }
     let position = world.translation;
-    let axis = direction(used_at, world, DVec3::NEG_Z)?;
+    // A point has none, and its node may be scaled to nothing.
+    let axis = || direction(used_at, world, DVec3::NEG_Z);
     let kind = match written.kind.as_str() {
-        "directional" => LightKind::Directional { direction: axis, irradiance: power },
+        "directional" => LightKind::Directional { direction: axis()?, irradiance: power },
         "point" => LightKind::Point { position, intensity: power },
         "spot" => {
             let quarter = 0.5 * std::f64::consts::PI;
@@ -166,7 +167,7 @@ pub fn light(
             let inner = format!("{path}.spot.innerConeAngle");
             let inner = within(inner, cone.inner_cone_angle, 0.0..=outer, "a half angle in radians")?;
             let height = |angle: f64| 2.0 * (0.5 * angle).sin().powi(2);
-            let beam = Beam { axis, inner: height(inner), outer: height(outer) };
+            let beam = Beam { axis: axis()?, inner: height(inner), outer: height(outer) };
             LightKind::Spot { position, intensity: power, beam, slide: None }
         }
         other => {

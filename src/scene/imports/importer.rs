@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 
 use super::{Import, Imported, told::Told};
 use crate::scene::{
-    Light, Material, MaterialKind, Mesh, Object, Shape,
+    Light, Material, Mesh, Object, Shape,
     gltf::{Body, Document, GltfFault, Group, Names, camera, fault, light, look, mapped, shown},
     measure::LARGEST,
 };
@@ -122,9 +122,6 @@ impl Importer<'_> {
                     if body.groups.len() > 1 { Some(self.document.material_name(group.material)) } else { None };
                 let of_group = several.map(|material| format!("/{material}")).unwrap_or_default();
                 let name = names.give(&format!("{}/{}{of_group}", self.name, node.name));
-                let textured = |m: &&Material| matches!(m.kind, MaterialKind::Diffuse { texture: Some(_), .. });
-                let shows = all.materials.iter().find(|m| m.name == material).filter(textured).is_some();
-                told.unplaced += usize::from(shows && mesh.coordinates.is_empty());
                 import.objects += 1;
                 import.triangles += mesh.triangles.len();
                 let shape = Shape::Mesh { mesh, to_world };

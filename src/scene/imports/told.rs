@@ -17,8 +17,6 @@ pub struct Told {
     morphs: usize,
     mended: usize,
     coloured: usize,
-    /// Meshes whose material has a texture, and that have no texture coordinates.
-    pub unplaced: usize,
     skins: usize,
     animations: usize,
     extensions: BTreeSet<String>,
@@ -90,11 +88,6 @@ impl Told {
                 self.skins,
                 "node is read without its skin, as its mesh stands",
                 "nodes are read without their skins, as their meshes stand",
-            ),
-            count(
-                self.unplaced,
-                "mesh has a texture and no texture coordinates: it shows one place of it",
-                "meshes have a texture and no texture coordinates: they show one place of it",
             ),
             count(self.animations, "animation is not played", "animations are not played"),
             count(
