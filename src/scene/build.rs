@@ -5,7 +5,9 @@ use std::{
 };
 
 use super::{
-    Camera, CameraKind, Light, Material, MaterialKind, Object, PathClassError, Scene, Shape, Source, Texture, edges,
+    Camera, CameraKind, Light, Material, MaterialKind, Object, PathClassError, Scene, Shape, Source, Texture,
+    assets::Assets,
+    edges,
     error::SceneError,
     file::{CameraFile, Colour, DiffuseFile, Floats, LightFile, MaterialFile, ObjectFile, SceneFile},
     imports::imports,
@@ -15,7 +17,7 @@ use super::{
     locate::Key,
     motion::Motion,
     motion_files,
-    object::{Meshes, object},
+    object::object,
     patch,
 };
 
@@ -29,18 +31,18 @@ const FIELDS: std::ops::RangeInclusive<f64> = 0.001..=179.9;
 /// Checks every value and resolves every name; `source` still lacks its hash.
 pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &Files) -> Result<Scene, SceneError> {
     let unit = root.key("unit").number(file.unit, 1e-9..=1e9, "metres per unit of length", "1 means metres")?;
-    let mut meshes = Meshes::new(files, &source.resolved);
+    let mut assets = Assets::new(files, &source.resolved);
     let mut materials = each(root, "materials", &file.materials, |key, name, written| {
-        Ok(Material { name, kind: material(key, written, &mut meshes)? })
+        Ok(Material { name, kind: material(key, written, &mut assets)? })
     })?;
     let mut lights = each(root, "lights", &file.lights, |key, name, written| {
-        Ok(Light { name, kind: light(key, written, unit, &mut meshes)? })
+        Ok(Light { name, kind: light(key, written, unit, &mut assets)? })
     })?;
-    let imported = imports(root, &file.imports, unit, &materials, &mut meshes)?;
+    let imported = imports(root, &file.imports, unit, &materials, &mut assets)?;
     materials.extend(imported.materials);
     materials.sort_by(|a, b| a.name.cmp(&b.name));
     let mut objects = each(root, "objects", &file.objects, |key, name, written| {
-        object(key, name, written, unit, &materials, &mut meshes)
+        object(key, name, written, unit, &materials, &mut assets)
     })?;
     let brought: Vec<Object> = resolved(imported.objects, &materials).collect();
     let unplaced: Vec<String> = brought.iter().filter_map(|object| unplaced(object, &materials)).collect();
@@ -52,7 +54,7 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
     let mut scene = Scene {
         name,
         title: file.title,
-        source: Source { hash: meshes.hash(), ..source },
+        source: Source { hash: assets.hash(), ..source },
         paths: file.paths.parse().map_err(|error: PathClassError| {
             let classes = "reflect-1, transmit-1, transmit-2 or all:N";
             root.key("paths").fault(classes, format!("`{}`", error.0), "name the class of the scene's caustic")
@@ -66,7 +68,7 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
             "0 is plain, each EV doubles",
         )?,
         cameras: cameras(&root.key("cameras"), &file.cameras, unit)?,
-        warnings: [imported.warnings, unplaced, meshes.warnings, edges::warnings(&objects, &materials)].concat(),
+        warnings: [imported.warnings, unplaced, assets.warnings, edges::warnings(&objects, &materials)].concat(),
         imports: imported.imports,
         objects,
         materials,
@@ -128,9 +130,9 @@ fn each<F, T>(
     files.iter().map(|(name, file)| make(&root.key(kind).key(name), name.clone(), file)).collect()
 }
 
-fn material(key: &Key, file: &MaterialFile, meshes: &mut Meshes) -> Result<MaterialKind, SceneError> {
+fn material(key: &Key, file: &MaterialFile, assets: &mut Assets) -> Result<MaterialKind, SceneError> {
     match (&file.diffuse, &file.dielectric, &file.mirror, &file.conductor) {
-        (Some(diffuse), None, None, None) => self::diffuse(&key.key("diffuse"), diffuse, meshes),
+        (Some(diffuse), None, None, None) => self::diffuse(&key.key("diffuse"), diffuse, assets),
         (None, Some(dielectric), None, None) => {
             let key = key.key("dielectric");
             Ok(MaterialKind::Dielectric {
@@ -159,13 +161,13 @@ fn material(key: &Key, file: &MaterialFile, meshes: &mut Meshes) -> Result<Mater
     }
 }
 
-fn diffuse(key: &Key, file: &DiffuseFile, meshes: &mut Meshes) -> Result<MaterialKind, SceneError> {
+fn diffuse(key: &Key, file: &DiffuseFile, assets: &mut Assets) -> Result<MaterialKind, SceneError> {
     if file.albedo.is_none() && file.texture.is_none() {
         return Err(key.key("albedo").fault("the key `albedo`, or a `texture`", "none", "add it"));
     }
     let albedo = key.key("albedo").share(file.albedo.unwrap_or(Colour([1.0; 3])))?;
     let texture =
-        file.texture.as_ref().map(|name| Texture::new(key, meshes.picture(&key.key("texture"), name)?, file.repeat));
+        file.texture.as_ref().map(|name| Texture::new(key, assets.picture(&key.key("texture"), name)?, file.repeat));
     if texture.is_none() && file.repeat.is_some() {
         let remedy = "add `texture`, or take `repeat` out";
         return Err(key.key("repeat").fault("a texture to repeat", "none", remedy));

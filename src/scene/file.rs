@@ -10,6 +10,8 @@ use super::{
     index::IndexFile,
     motion_files::{LightMotionFile, ObjectMotionFile},
     schema,
+    shape_files::{BoxFile, CylinderFile, DiskFile, ParaboloidFile, SineFile},
+    sheet_files::{HeightsFile, WaveFile},
 };
 
 /// The one version there is.
@@ -172,133 +174,6 @@ pub struct QuadFile {
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BoxFile {
-    /// Of the box.
-    pub center: Floats<3>,
-    /// Three half edges.
-    pub half: Floats<3>,
-    /// Degrees about x, then y, then z.
-    #[serde(default)]
-    pub rotate: Floats<3>,
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DiskFile {
-    /// Of the disk.
-    pub center: Floats<3>,
-    /// To the lit side.
-    pub normal: Floats<3>,
-    /// In lengths of the file.
-    pub radius: f64,
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CylinderFile {
-    /// Centre of one end.
-    pub base: Floats<3>,
-    /// From there to the other end.
-    pub axis: Floats<3>,
-    /// In lengths of the file.
-    pub radius: f64,
-    /// Along the axis.
-    pub height: f64,
-    /// Degrees of the circle that are there.
-    #[serde(default = "full_turn")]
-    pub arc: f64,
-    /// Needed where the arc is less than a full turn.
-    pub middle: Option<Floats<3>>,
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ParaboloidFile {
-    /// Its deepest point.
-    pub vertex: Floats<3>,
-    /// From the vertex to the focus.
-    pub axis: Floats<3>,
-    /// From the vertex to the focus.
-    pub focal_length: f64,
-    /// Radius of the rim.
-    pub rim: f64,
-    /// With `middle`, an off-axis part.
-    pub from: Option<f64>,
-    /// From the axis to the middle of the part.
-    pub middle: Option<Floats<3>>,
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SineFile {
-    /// Of the rectangle.
-    pub center: Floats<3>,
-    /// Half edge; the wave runs along it.
-    pub u: Floats<3>,
-    /// Half edge, at right angles to u.
-    pub v: Floats<3>,
-    /// Half the height from trough to crest.
-    pub amplitude: f64,
-    /// Along u.
-    pub wavelength: f64,
-    /// Lengths a second, along u.
-    #[serde(default)]
-    pub speed: f64,
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HeightsFile {
-    /// A grey PNG, or an EXR of one channel.
-    pub file: String,
-    /// Of the rectangle.
-    pub center: Floats<3>,
-    /// Half edge.
-    pub u: Floats<3>,
-    /// Half edge, at right angles to u; the picture's upper edge is at +v.
-    pub v: Floats<3>,
-    /// Of a pixel of value 1; of PNG, white.
-    pub height: f64,
-    /// Height of a pixel of value 0.
-    #[serde(default)]
-    pub base: f64,
-    /// Cells along the longer side; without it one between two pixels.
-    pub grid: Option<u32>,
-}
-
-/// Constants that are left out are the paper's.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct WaveFile {
-    /// Of the rectangle.
-    pub center: Floats<3>,
-    /// Half edge.
-    pub u: Floats<3>,
-    /// Half edge, at right angles to u.
-    pub v: Floats<3>,
-    /// Of one unit of the wave; else the edge along u.
-    pub length: Option<f64>,
-    /// The wave's own coordinates at the centre.
-    pub middle: Option<Floats<2>>,
-    /// Terms of the sum.
-    pub octaves: Option<u32>,
-    /// WAVESIZE of the paper.
-    pub wave_size: Option<f64>,
-    /// FACTOR of the paper: of the first term; each next has half.
-    pub factor: Option<f64>,
-    /// SPEED of the paper, radians a second.
-    pub speed: Option<f64>,
-    /// VTXSIZE of the paper.
-    pub vertex_size: Option<f64>,
-    /// s, where the scene's time is 0.
-    #[serde(default)]
-    pub time: f64,
-    /// Cells along the longer side.
-    pub grid: Option<u32>,
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MeshFile {
     /// Path of an OBJ or glTF file, or `model:NAME` of the models folder.
     pub file: String,
@@ -415,10 +290,6 @@ pub struct SpotFile {
 
 pub fn one() -> f64 {
     1.0
-}
-
-fn full_turn() -> f64 {
-    360.0
 }
 
 pub fn yes() -> bool {

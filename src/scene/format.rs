@@ -107,7 +107,7 @@ mod tests {
     use serde::Deserialize;
 
     use super::keys;
-    use crate::scene::{file, imports, motion_files};
+    use crate::scene::{file, imports, motion_files, shape_files, sheet_files};
 
     /// The keys that the deserialiser names when it meets one that it does not know.
     fn known<T: for<'de> Deserialize<'de>>() -> Vec<String> {
@@ -126,13 +126,13 @@ mod tests {
         assert_eq!(keys(&["objects", ""]), known::<file::ObjectFile>());
         assert_eq!(keys(&["objects", "", "sphere"]), known::<file::SphereFile>());
         assert_eq!(keys(&["objects", "", "quad"]), known::<file::QuadFile>());
-        assert_eq!(keys(&["objects", "", "box"]), known::<file::BoxFile>());
-        assert_eq!(keys(&["objects", "", "disk"]), known::<file::DiskFile>());
-        assert_eq!(keys(&["objects", "", "cylinder"]), known::<file::CylinderFile>());
-        assert_eq!(keys(&["objects", "", "paraboloid"]), known::<file::ParaboloidFile>());
-        assert_eq!(keys(&["objects", "", "sine"]), known::<file::SineFile>());
-        assert_eq!(keys(&["objects", "", "heights"]), known::<file::HeightsFile>());
-        assert_eq!(keys(&["objects", "", "wave"]), known::<file::WaveFile>());
+        assert_eq!(keys(&["objects", "", "box"]), known::<shape_files::BoxFile>());
+        assert_eq!(keys(&["objects", "", "disk"]), known::<shape_files::DiskFile>());
+        assert_eq!(keys(&["objects", "", "cylinder"]), known::<shape_files::CylinderFile>());
+        assert_eq!(keys(&["objects", "", "paraboloid"]), known::<shape_files::ParaboloidFile>());
+        assert_eq!(keys(&["objects", "", "sine"]), known::<shape_files::SineFile>());
+        assert_eq!(keys(&["objects", "", "heights"]), known::<sheet_files::HeightsFile>());
+        assert_eq!(keys(&["objects", "", "wave"]), known::<sheet_files::WaveFile>());
         assert_eq!(keys(&["objects", "", "mesh"]), known::<file::MeshFile>());
         assert_eq!(keys(&["objects", "", "motion"]), known::<motion_files::ObjectMotionFile>());
         assert_eq!(keys(&["objects", "", "motion", "twist"]), known::<motion_files::TwistFile>());

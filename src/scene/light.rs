@@ -5,10 +5,10 @@ use glam::DVec3;
 
 use super::{
     Slide,
+    assets::Assets,
     error::SceneError,
     file::{LightFile, SpotFile},
     locate::Key,
-    object::Meshes,
 };
 
 /// Half angles of a spot's cone, degrees; of 180 it is a point light.
@@ -132,7 +132,7 @@ impl LightKind {
     }
 }
 
-pub(super) fn light(key: &Key, file: &LightFile, unit: f64, meshes: &mut Meshes) -> Result<LightKind, SceneError> {
+pub(super) fn light(key: &Key, file: &LightFile, unit: f64, assets: &mut Assets) -> Result<LightKind, SceneError> {
     match (&file.directional, &file.point, &file.spot) {
         (Some(sun), None, None) => {
             let key = key.key("directional");
@@ -148,12 +148,12 @@ pub(super) fn light(key: &Key, file: &LightFile, unit: f64, meshes: &mut Meshes)
                 intensity: key.key("intensity").strength(point.intensity, "an intensity in W/sr")?,
             })
         }
-        (None, None, Some(written)) => spot(&key.key("spot"), written, unit, meshes),
+        (None, None, Some(written)) => spot(&key.key("spot"), written, unit, assets),
         _ => Err(key.one_kind(&["directional", "point", "spot"])),
     }
 }
 
-fn spot(key: &Key, file: &SpotFile, unit: f64, meshes: &mut Meshes) -> Result<LightKind, SceneError> {
+fn spot(key: &Key, file: &SpotFile, unit: f64, assets: &mut Assets) -> Result<LightKind, SceneError> {
     let half_angle = |name: &str, value: f64, range| {
         key.key(name).number(value, range, "a half angle in degrees", "it is measured from the axis to the edge")
     };
@@ -163,7 +163,7 @@ fn spot(key: &Key, file: &SpotFile, unit: f64, meshes: &mut Meshes) -> Result<Li
     let height = |degrees: f64| if degrees == 180.0 { 3.0 } else { 2.0 * (0.5 * degrees.to_radians()).sin().powi(2) };
     let axis = key.key("direction").direction(file.direction)?;
     let slide =
-        file.image.as_ref().map(|name| Slide::new(key, meshes.picture(&key.key("image"), name)?, file.up, axis, outer));
+        file.image.as_ref().map(|name| Slide::new(key, assets.picture(&key.key("image"), name)?, file.up, axis, outer));
     if slide.is_none() && file.up.is_some() {
         return Err(key.key("up").fault("an image that stands upright", "none", "add `image`, or take `up` out"));
     }

@@ -11,6 +11,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
+mod assets;
 mod build;
 mod canonical;
 mod class;
@@ -204,7 +205,7 @@ impl Shape {
 }
 
 /// A triangle mesh in its own units. Every vertex belongs to a triangle.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// As the scene names it: a path, or `model:NAME` of the [`Models`] folder.
     pub file: String,

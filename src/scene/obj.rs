@@ -93,14 +93,7 @@ impl Statements {
         let mut corners = self.faces.iter().flat_map(|(_, face)| face);
         let own_normals = corners.clone().all(|corner| corner.normal.is_some());
         let placed = corners.all(|corner| corner.coordinates.is_some());
-        let mut mesh = Mesh {
-            file: file.to_owned(),
-            positions: vec![],
-            normals: vec![],
-            triangles: vec![],
-            coordinates: vec![],
-            sheet: None,
-        };
+        let mut mesh = Mesh { file: file.to_owned(), ..Mesh::default() };
         let made = if own_normals { vec![] } else { self.normals_of_positions()? };
         let mut vertices = HashMap::new();
         for (line, face) in &self.faces {

@@ -1,18 +1,15 @@
-//! Objects: shapes checked, meshes read and put in place.
-use std::{collections::BTreeMap, path::Path, sync::Arc};
-
+//! Objects: shapes checked, and put in place.
 use glam::{DAffine3, DVec3};
 
 use super::{
-    Material, Mesh, Models, Object, Picture, Shape,
+    Material, Object, Shape,
+    assets::{Assets, BESIDE},
     error::SceneError,
-    file::{Floats, HeightsFile, MeshFile, ObjectFile, QuadFile, SineFile, SphereFile, WaveFile},
-    gltf::Document,
-    imports::Told,
-    load::Files,
+    file::{Floats, MeshFile, ObjectFile, QuadFile, SphereFile},
     locate::Key,
-    models, obj, picture, shape_files,
-    sheet_files::{self, WaveSheet},
+    picture,
+    shape_files::{self, SineFile},
+    sheet_files::{self, HeightsFile, WaveFile, WaveSheet},
 };
 
 /// Cosine between a quad's edges that passes for a right angle: the rounding of decimal numbers in a file.
@@ -26,11 +23,11 @@ pub fn object(
     file: &ObjectFile,
     unit: f64,
     materials: &[Material],
-    meshes: &mut Meshes,
+    assets: &mut Assets,
 ) -> Result<Object, SceneError> {
     let names = materials.iter().map(|material| material.name.as_str());
     let material = key.key("material").resolve("a material", &file.material, names)?;
-    let shape = shape(key, file, unit, meshes)?;
+    let shape = shape(key, file, unit, assets)?;
     shape_files::refuse_open_shell(key, &shape, &materials[material])?;
     picture::refuse_no_coordinates(&key.key("material"), &shape, &materials[material])?;
     Ok(Object { name, shape, material, visible_to_camera: file.visible_to_camera })
@@ -41,7 +38,7 @@ const KINDS: [&str; 10] =
     ["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "sine", "heights", "wave", "mesh"];
 
 /// Of the one kind that is given.
-fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
+fn shape(key: &Key, file: &ObjectFile, unit: f64, assets: &mut Assets) -> Result<Shape, SceneError> {
     let kinds = [
         file.sphere.as_ref().map(|written| sphere(&key.key("sphere"), written, unit)),
         file.quad.as_ref().map(|written| quad(&key.key("quad"), written, unit)),
@@ -50,9 +47,9 @@ fn shape(key: &Key, file: &ObjectFile, unit: f64, meshes: &mut Meshes) -> Result
         file.cylinder.as_ref().map(|written| shape_files::cylinder(&key.key("cylinder"), written, unit)),
         file.paraboloid.as_ref().map(|written| shape_files::paraboloid(&key.key("paraboloid"), written, unit)),
         file.sine.as_ref().map(|written| sine(&key.key("sine"), written, unit)),
-        file.heights.as_ref().map(|written| heights(&key.key("heights"), written, unit, meshes)),
+        file.heights.as_ref().map(|written| heights(&key.key("heights"), written, unit, assets)),
         file.wave.as_ref().map(|written| Ok(wave(&key.key("wave"), written, unit)?.at(0.0))),
-        file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, meshes)),
+        file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, assets)),
     ];
     let mut given = kinds.into_iter().flatten();
     match (given.next(), given.next()) {
@@ -76,9 +73,9 @@ fn sine(key: &Key, file: &SineFile, unit: f64) -> Result<Shape, SceneError> {
     shape_files::sine(key, file, sheet, unit)
 }
 
-fn heights(key: &Key, file: &HeightsFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
+fn heights(key: &Key, file: &HeightsFile, unit: f64, assets: &mut Assets) -> Result<Shape, SceneError> {
     let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
-    let bytes = meshes.bytes(&key.key("file"), &file.file, "a readable picture", BESIDE)?;
+    let bytes = assets.bytes(&key.key("file"), &file.file, "a readable picture", BESIDE)?;
     sheet_files::heights(key, file, &bytes, sides, unit)
 }
 
@@ -101,8 +98,8 @@ fn rectangle(key: &Key, [center, u, v]: [Floats<3>; 3], unit: f64) -> Result<[DV
 
 /// Scaled so that its largest side, before it is turned, is `fit`; turned about x, then y, then z; its box then rests
 /// on `center`.
-fn mesh(key: &Key, file: &MeshFile, unit: f64, meshes: &mut Meshes) -> Result<Shape, SceneError> {
-    let mesh = meshes.read(&key.key("file"), &file.file)?;
+fn mesh(key: &Key, file: &MeshFile, unit: f64, assets: &mut Assets) -> Result<Shape, SceneError> {
+    let mesh = assets.mesh(&key.key("file"), &file.file)?;
     let fit = key.key("fit").size(file.fit, unit)?;
     let center = key.key("center").point(file.center, unit)?;
     let side = mesh.bounds(|p| p).map_or(0.0, |[low, high]| (high - low).max_element());
@@ -115,94 +112,4 @@ fn mesh(key: &Key, file: &MeshFile, unit: f64, meshes: &mut Meshes) -> Result<Sh
 
 fn usable_side(key: &Key, side: f64) -> Result<f64, SceneError> {
     key.key("file").number(side, SIDES, "a mesh with a largest side", "scale the mesh in its file")
-}
-
-/// What to do about a file that cannot be read.
-pub const BESIDE: &str = "paths are relative to the scene file";
-const MESH: &str = "paths are relative to the scene file; a mesh may be model:NAME, one of the models folder";
-
-/// By its ending.
-fn is_gltf(file: &str) -> bool {
-    let ending = Path::new(file).extension().map(|ending| ending.to_ascii_lowercase());
-    ending.is_some_and(|ending| ending == "gltf" || ending == "glb")
-}
-
-/// The meshes and pictures read so far, each once, and the hash over the scene and their bytes.
-pub struct Meshes<'a> {
-    files: &'a Files,
-    hasher: blake3::Hasher,
-    read: BTreeMap<String, Arc<Mesh>>,
-    pictures: BTreeMap<String, Arc<Picture>>,
-    /// What is left out of them.
-    pub warnings: Vec<String>,
-}
-
-impl<'a> Meshes<'a> {
-    pub fn new(files: &'a Files, resolved: &str) -> Self {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(resolved.as_bytes());
-        Meshes { files, hasher, read: BTreeMap::new(), pictures: BTreeMap::new(), warnings: Vec::new() }
-    }
-
-    pub fn hash(&self) -> String {
-        self.hasher.finalize().to_hex().to_string()
-    }
-
-    fn read(&mut self, key: &Key, file: &str) -> Result<Arc<Mesh>, SceneError> {
-        if let Some(mesh) = self.read.get(file) {
-            return Ok(mesh.clone());
-        }
-        if is_gltf(file) {
-            let document = self.document(key, file, MESH)?;
-            let mut told = Told::of(&document);
-            let mesh = document.flattened(file, |body| told.body(body)).map_err(|fault| fault.in_scene(key, file))?;
-            self.warnings.extend(told.warnings(file));
-            return Ok(self.read.entry(file.to_owned()).or_insert(Arc::new(mesh)).clone());
-        }
-        let bytes = if let Some(name) = file.strip_prefix(models::PREFIX) {
-            let bytes = Models::open().read(name);
-            let bytes = bytes.map_err(|fault| key.fault(fault.expected, fault.found, fault.remedy))?;
-            self.hasher.update(&bytes);
-            bytes
-        } else {
-            self.bytes(key, file, "a readable OBJ or glTF file", MESH)?
-        };
-        let mesh = Arc::new(obj::parse(file, &bytes).map_err(|fault| {
-            let line = if fault.line == 0 { String::new() } else { format!(":{}", fault.line) };
-            key.fault(fault.expected, format!("{} at {file}{line}", fault.found), fault.remedy)
-        })?);
-        self.read.insert(file.to_owned(), mesh.clone());
-        Ok(mesh)
-    }
-
-    /// Of a texture or a slide.
-    pub fn picture(&mut self, key: &Key, file: &str) -> Result<Arc<Picture>, SceneError> {
-        if let Some(picture) = self.pictures.get(file) {
-            return Ok(picture.clone());
-        }
-        let bytes = self.bytes(key, file, "a readable picture", BESIDE)?;
-        let picture = Arc::new(Picture::read(key, file, &bytes)?);
-        self.pictures.insert(file.to_owned(), picture.clone());
-        Ok(picture)
-    }
-
-    /// A glTF file with its buffers.
-    pub fn document(&mut self, key: &Key, file: &str, remedy: &str) -> Result<Document, SceneError> {
-        let bytes = self.bytes(key, file, "a readable glTF file", remedy)?;
-        let folder = Path::new(file).parent().unwrap_or(Path::new("")).to_owned();
-        let mut beside = |name: &str| {
-            let bytes = self.files.read(&folder.join(name).to_string_lossy())?;
-            self.hasher.update(&bytes);
-            Ok(bytes)
-        };
-        Document::read(&bytes, &mut beside).map_err(|fault| fault.in_scene(key, file))
-    }
-
-    /// Of a file beside the scene, which are of the scene from now on.
-    pub fn bytes(&mut self, key: &Key, file: &str, expected: &str, remedy: &str) -> Result<Vec<u8>, SceneError> {
-        let unreadable = |why: String| key.fault(expected, format!("{file}: {why}"), remedy);
-        let bytes = self.files.read(file).map_err(unreadable)?;
-        self.hasher.update(&bytes);
-        Ok(bytes)
-    }
 }

@@ -1,18 +1,95 @@
-//! Canonical shapes: checked, and put in place.
+//! Canonical shapes as scene files write them: checked, and put in place.
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+use schemars::JsonSchema;
+use serde::Deserialize;
 
-use super::{
-    Canonical, Material, MaterialKind, Shape, WHOLE,
-    error::SceneError,
-    file::{BoxFile, CylinderFile, DiskFile, Floats, ParaboloidFile, SineFile},
-    locate::Key,
-};
+use super::{Canonical, Material, MaterialKind, Shape, WHOLE, error::SceneError, file::Floats, locate::Key};
 
 /// Sine between an axis and a direction below which it has no part across the axis.
 const ACROSS: f64 = 1e-6;
 const FULL_TURN: f64 = 360.0;
 /// Waves on half a sheet: beyond these float32 loses their phase.
 const WAVES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxFile {
+    /// Of the box.
+    pub center: Floats<3>,
+    /// Three half edges.
+    pub half: Floats<3>,
+    /// Degrees about x, then y, then z.
+    #[serde(default)]
+    pub rotate: Floats<3>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiskFile {
+    /// Of the disk.
+    pub center: Floats<3>,
+    /// To the lit side.
+    pub normal: Floats<3>,
+    /// In lengths of the file.
+    pub radius: f64,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderFile {
+    /// Centre of one end.
+    pub base: Floats<3>,
+    /// From there to the other end.
+    pub axis: Floats<3>,
+    /// In lengths of the file.
+    pub radius: f64,
+    /// Along the axis.
+    pub height: f64,
+    /// Degrees of the circle that are there.
+    #[serde(default = "full_turn")]
+    pub arc: f64,
+    /// Needed where the arc is less than a full turn.
+    pub middle: Option<Floats<3>>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParaboloidFile {
+    /// Its deepest point.
+    pub vertex: Floats<3>,
+    /// From the vertex to the focus.
+    pub axis: Floats<3>,
+    /// From the vertex to the focus.
+    pub focal_length: f64,
+    /// Radius of the rim.
+    pub rim: f64,
+    /// With `middle`, an off-axis part.
+    pub from: Option<f64>,
+    /// From the axis to the middle of the part.
+    pub middle: Option<Floats<3>>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SineFile {
+    /// Of the rectangle.
+    pub center: Floats<3>,
+    /// Half edge; the wave runs along it.
+    pub u: Floats<3>,
+    /// Half edge, at right angles to u.
+    pub v: Floats<3>,
+    /// Half the height from trough to crest.
+    pub amplitude: f64,
+    /// Along u.
+    pub wavelength: f64,
+    /// Lengths a second, along u.
+    #[serde(default)]
+    pub speed: f64,
+}
+
+fn full_turn() -> f64 {
+    FULL_TURN
+}
 
 /// Turned about x, then y, then z, by degrees.
 pub fn turned(key: &Key, rotate: Floats<3>) -> Result<DMat3, SceneError> {

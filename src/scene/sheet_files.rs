@@ -1,10 +1,12 @@
 //! Sheets as scene files write them: heights from a picture, and the wave function.
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 use super::{
     Shape, Wave,
     error::SceneError,
-    file::{Floats, HeightsFile, WaveFile},
+    file::Floats,
     locate::Key,
     measure::LARGEST,
     sheet::{Sheet, sheet},
@@ -22,6 +24,57 @@ const CONSTANTS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 const COORDINATES: std::ops::RangeInclusive<f64> = 0.0..=1e3;
 /// s
 const TIMES: std::ops::RangeInclusive<f64> = -1e9..=1e9;
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeightsFile {
+    /// A grey PNG, or an EXR of one channel.
+    pub file: String,
+    /// Of the rectangle.
+    pub center: Floats<3>,
+    /// Half edge.
+    pub u: Floats<3>,
+    /// Half edge, at right angles to u; the picture's upper edge is at +v.
+    pub v: Floats<3>,
+    /// Of a pixel of value 1; of PNG, white.
+    pub height: f64,
+    /// Height of a pixel of value 0.
+    #[serde(default)]
+    pub base: f64,
+    /// Cells along the longer side; without it one between two pixels.
+    pub grid: Option<u32>,
+}
+
+/// Constants that are left out are the paper's.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WaveFile {
+    /// Of the rectangle.
+    pub center: Floats<3>,
+    /// Half edge.
+    pub u: Floats<3>,
+    /// Half edge, at right angles to u.
+    pub v: Floats<3>,
+    /// Of one unit of the wave; else the edge along u.
+    pub length: Option<f64>,
+    /// The wave's own coordinates at the centre.
+    pub middle: Option<Floats<2>>,
+    /// Terms of the sum.
+    pub octaves: Option<u32>,
+    /// WAVESIZE of the paper.
+    pub wave_size: Option<f64>,
+    /// FACTOR of the paper: of the first term; each next has half.
+    pub factor: Option<f64>,
+    /// SPEED of the paper, radians a second.
+    pub speed: Option<f64>,
+    /// VTXSIZE of the paper.
+    pub vertex_size: Option<f64>,
+    /// s, where the scene's time is 0.
+    #[serde(default)]
+    pub time: f64,
+    /// Cells along the longer side.
+    pub grid: Option<u32>,
+}
 
 /// Heights of a grey picture over a rectangle, its upper edge at +v: linear between pixels, of which the outermost lie on
 /// the edges.

@@ -171,11 +171,8 @@ fn place(
         }
         Shape::Mesh { mesh, .. } if mesh.triangles.is_empty() => return Ok(None),
         Shape::Canonical { kind, to_world } => {
-            if let Canonical::Sine { phase: of, .. } = kind {
-                phase = *of as f32;
-            }
-            let (kind, more) = canonical(kind);
-            detail = more.to_bits();
+            let (kind, more, of) = canonical(kind);
+            (detail, phase) = (more.to_bits(), of);
             let [lo, hi] = object.shape.bounds().unwrap_or_default();
             (kind, *to_world, (lo, hi))
         }
@@ -200,14 +197,14 @@ fn place(
     Ok(Some(Placed { instance, mesh, bounds: roomy_box(lo, hi) }))
 }
 
-/// Its number, and what more it needs to know.
-fn canonical(kind: &Canonical) -> (u32, f32) {
+/// Its number, what more it needs to know, and its phase.
+fn canonical(kind: &Canonical) -> (u32, f32, f32) {
     match *kind {
-        Canonical::Box => (SHAPE_BOX, 0.0),
-        Canonical::Disk => (SHAPE_DISK, 0.0),
-        Canonical::Cylinder { cut } => (SHAPE_CYLINDER, cut as f32),
-        Canonical::Paraboloid { cut } => (SHAPE_PARABOLOID, cut as f32),
-        Canonical::Sine { wave, .. } => (SHAPE_SINE, wave as f32),
+        Canonical::Box => (SHAPE_BOX, 0.0, 0.0),
+        Canonical::Disk => (SHAPE_DISK, 0.0, 0.0),
+        Canonical::Cylinder { cut } => (SHAPE_CYLINDER, cut as f32, 0.0),
+        Canonical::Paraboloid { cut } => (SHAPE_PARABOLOID, cut as f32, 0.0),
+        Canonical::Sine { wave, phase } => (SHAPE_SINE, wave as f32, phase as f32),
     }
 }
 

@@ -8,14 +8,7 @@ impl Document {
     /// All triangles of the scene where its nodes put them; each body that was read is told.
     pub fn flattened(&self, file: &str, mut told: impl FnMut(&Body)) -> Result<Mesh, GltfFault> {
         let mut bodies = HashMap::<usize, Rc<Body>>::new();
-        let mut all = Mesh {
-            file: file.to_owned(),
-            positions: vec![],
-            normals: vec![],
-            triangles: vec![],
-            coordinates: vec![],
-            sheet: None,
-        };
+        let mut all = Mesh { file: file.to_owned(), ..Mesh::default() };
         let mut bare = false;
         for node in self.placed()? {
             let Some(index) = self.json.nodes[node.node].mesh else { continue };

@@ -7,11 +7,11 @@ use serde::Deserialize;
 
 use super::{
     Camera, Light, Material, Object,
+    assets::{Assets, BESIDE},
     error::SceneError,
     file::{Floats, one, yes},
     gltf::Document,
     locate::Key,
-    object::{BESIDE, Meshes},
     picture::refuse_no_coordinates,
     shape_files,
 };
@@ -93,12 +93,12 @@ pub fn imports(
     files: &BTreeMap<String, ImportFile>,
     unit: f64,
     own: &[Material],
-    meshes: &mut Meshes,
+    assets: &mut Assets,
 ) -> Result<Imported, SceneError> {
     let mut all = Imported::default();
     for (name, file) in files {
         let key = root.key("imports").key(name);
-        let document = meshes.document(&key.key("file"), &file.file, BESIDE)?;
+        let document = assets.document(&key.key("file"), &file.file, BESIDE)?;
         check_replaced(&key.key("materials"), &document, file, own)?;
         let scale = key.key("scale").number(file.scale, SCALES, "metres a unit of the file", "glTF is in metres: 1")?;
         let position = key.key("position").point(file.position, unit)?;

@@ -9,7 +9,7 @@ use crate::scene::{
 /// Counts of what is not read, and the materials that lose something.
 #[derive(Default)]
 pub struct Told {
-    /// Meshes of a node that it leaves nothing of.
+    /// Assets of a node that it leaves nothing of.
     pub flat: usize,
     /// Lights that say how far they reach.
     pub ranges: usize,
