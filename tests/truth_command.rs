@@ -83,6 +83,24 @@ fn a_finished_truth_is_listed_reused_and_cleared() {
     assert_eq!(String::from_utf8(run("truth --list", &folder, "").stdout).unwrap().lines().count(), 1);
 }
 
+/// A run killed between its last two steps leaves its finished truth and the sums as well.
+#[test]
+fn sums_that_a_finished_truth_leaves_behind_go_with_the_next_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = SHORT.replace("20000", "400000");
+    assert!(run(&format!("{line} --max-seconds 0"), &folder, "b.exr").status.success());
+    assert!(run(&line, &folder, "a.exr").status.success());
+    let sums = folder.path().join("b.exr.partial");
+    assert!(sums.exists());
+    let again = run(&line, &folder, "b.exr");
+    assert!(again.status.success() && error(&again).contains("made before"), "{}", error(&again));
+    assert!(!sums.exists());
+    // Those of another task stay.
+    fs::write(&sums, "of another").unwrap();
+    assert!(run(&line, &folder, "b.exr").status.success());
+    assert!(sums.exists());
+}
+
 #[test]
 fn the_file_says_what_it_is() {
     let folder = tempfile::tempdir().unwrap();

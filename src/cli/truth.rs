@@ -103,12 +103,13 @@ pub fn run(args: &TruthArgs) -> Result<(), Failure> {
     if out.is_dir() {
         return Err(Failure::usage(anyhow!("-o {}: a folder; name a file in it", out.display())));
     }
+    let partial = Partial { file: partial(out), key: task.sums_key(&scene) };
     if let Some(bytes) = store.get(TRUTHS, &task.key(&scene)) {
         write_whole(out, |file| file.write_all(&bytes))?;
+        partial.discard();
         say(&format!("written: {}, made before", out.display()));
         return Ok(());
     }
-    let partial = Partial { file: partial(out), key: task.sums_key(&scene) };
     let before = partial.before(args.resume)?;
     make(args, (&scene, camera, &task), &partial, before, (&store, out))
 }
@@ -158,7 +159,7 @@ fn make(
     }
     write_whole(out, |file| file.write_all(&bytes))?;
     if standing.finished {
-        let _ = fs::remove_file(&partial.file); // of no use to anyone now
+        partial.discard();
     }
     warn(&run.provenance(), &standing);
     say(&summary(&standing, out, started));
@@ -227,8 +228,20 @@ impl Partial {
             let error = anyhow!("{file} holds what an earlier run has done: go on with --resume, or remove it");
             return Err(Failure::usage(error));
         }
-        let whole = bytes.split_at_checked(64).filter(|(sum, sums)| self.checksum(sums).as_bytes() == *sum);
-        whole.map(|(_, sums)| Some(sums.to_vec())).ok_or_else(|| self.foreign())
+        self.sums(&bytes).map(|sums| Some(sums.to_vec())).ok_or_else(|| self.foreign())
+    }
+
+    /// The sums in what a file holds, where they are whole and of this task.
+    fn sums<'a>(&self, bytes: &'a [u8]) -> Option<&'a [u8]> {
+        let (sum, sums) = bytes.split_at_checked(64)?;
+        (self.checksum(sums).as_bytes() == sum).then_some(sums)
+    }
+
+    /// Removes the file once its task is finished: of no use to anyone then. One of another task stays.
+    fn discard(&self) {
+        if fs::read(&self.file).is_ok_and(|bytes| self.sums(&bytes).is_some()) {
+            let _ = fs::remove_file(&self.file);
+        }
     }
 
     /// Hands the sums to the run.
