@@ -3,6 +3,12 @@
 //! A NaN or an infinity among the values, or no value at all, gives infinity: what was not measured passes no test
 //! and wins no comparison.
 
+mod bootstrap;
+mod series;
+
+pub use bootstrap::{CONFIDENCE, Interval, bootstrap_median, bootstrap_ratio};
+pub use series::{Change, Moves, change_of, is_settled};
+
 /// The middle value; the mean of the two middle ones for an even count.
 ///
 /// # Examples
