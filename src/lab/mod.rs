@@ -22,6 +22,7 @@ mod report;
 mod scene_report;
 mod sequence;
 mod table;
+pub mod timing;
 mod tracers;
 
 pub use catalogue::{MethodsReport, ScenesReport};
