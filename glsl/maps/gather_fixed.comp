@@ -2,11 +2,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// Gather `fetch` with sums in fixed point: each photon adds the texels of its splat to 64-bit sums of two words. The word
-// that wraps tells the one who made it wrap, and he carries: integers add up to the same in any order, so that the sum
-// is exact but for the rounding of each addend, and repeats.
+// Gather `fetch` with sums in fixed point: each photon adds the texels of its splat to exact sums.
 
 #include "maps/photon_splat.glsl"
+#include "shared/flux_sums.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -15,24 +14,6 @@ layout(push_constant, scalar) uniform Push {
     float diameter; // texels
     uint light;
 } push;
-
-layout(set = 0, binding = 10, scalar) buffer MapSums { uint data[]; } maps_sums; // low, high of each band of each texel
-
-layout(set = 0, binding = 11, scalar) readonly buffer MapUnit { float per_watt, watts; } maps_unit;
-
-// Beyond what any number of photons may bring: keeps what is infinite from being converted.
-const float MOST = 1.1529215e18; // 2^60
-
-void add_fixed(uint word, float flux) {
-    float units = min(flux * maps_unit.per_watt, MOST);
-    if (!(units > 0.0)) return;
-    uint high = uint(units * 2.3283064e-10); // 2^-32
-    float rest = units - float(high) * 4294967296.0;
-    uint low = uint(rest) + (fract(rest) >= 0.5 ? 1u : 0u);
-    uint before = atomicAdd(maps_sums.data[word], low);
-    if (before + low < before) high++;
-    if (high != 0u) atomicAdd(maps_sums.data[word + 1u], high);
-}
 
 // The texels that a point of this size about p would cover: as `splat_norm` sums over them.
 ivec2 covered(float p, float d) {
@@ -50,10 +31,7 @@ void main() {
         float across = splat_weight(float(y) + 0.5, s.centre.y, d);
         for (int x = columns.x; x < columns.y; x++) {
             vec3 flux = across * splat_weight(float(x) + 0.5, s.centre.x, d) * s.flux;
-            uint word = 6u * uint((s.layer * push.side + y) * push.side + x);
-            add_fixed(word, flux.r);
-            add_fixed(word + 2u, flux.g);
-            add_fixed(word + 4u, flux.b);
+            add_flux(uint((s.layer * push.side + y) * push.side + x), flux);
         }
     }
 }

@@ -166,6 +166,11 @@ pub fn parse_set(text: &str) -> Result<(String, String), String> {
     }
 }
 
+pub fn parse_noise(text: &str) -> Result<f64, String> {
+    let value = text.strip_prefix("relmse=").and_then(|x| x.parse().ok());
+    value.filter(|x: &f64| x.is_finite() && *x > 0.0).ok_or_else(|| "expected relmse=X with X above 0".to_owned())
+}
+
 pub fn parse_seconds(text: &str) -> Result<f64, String> {
     let value = text.parse().ok().filter(|s: &f64| s.is_finite() && *s >= 0.0);
     value.ok_or_else(|| "expected a number of seconds".to_owned())

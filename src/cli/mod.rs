@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device or display, 130 interrupted.
 
 mod args;
+mod budget;
 mod compare;
 mod failure;
 mod list;
@@ -45,6 +46,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Trace a scene's reference in float64 on the CPU, with its variance
     Truth(truth::TruthArgs),
+    /// Say where a method's error comes from: a chain of pictures from the truth to its own, and what each step adds
+    Budget(budget::BudgetArgs),
     /// Hold every tracer against exact intersection on a scene's light, texel by texel
     Tracers(tracers::TracersArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
@@ -72,6 +75,7 @@ impl Cli {
             Command::View(args) => view::run(&args),
             Command::Compare(args) => compare::run(&args),
             Command::Truth(args) => truth::run(&args),
+            Command::Budget(args) => budget::run(&args),
             Command::Tracers(args) => tracers::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),

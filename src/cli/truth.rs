@@ -14,7 +14,7 @@ use std::io::{ErrorKind, Write};
 
 use super::{
     Failure,
-    args::{parse_seconds, parse_set, parse_size, parse_time},
+    args::{parse_noise, parse_seconds, parse_set, parse_size, parse_time},
     output::{self, print, say},
     progress::TruthProgress,
     signals,
@@ -272,11 +272,6 @@ fn listing(store: &Store) -> String {
     };
     let rows = store.list(TRUTHS).into_iter().filter_map(|e| Some(format!("{}  {} bytes\n", row(&e.key)?, e.bytes)));
     "scene  estimator  paths  camera  size  seed  photons  noise\n".to_owned() + &rows.collect::<String>()
-}
-
-fn parse_noise(text: &str) -> Result<f64, String> {
-    let value = text.strip_prefix("relmse=").and_then(|x| x.parse().ok());
-    value.filter(|x: &f64| x.is_finite() && *x > 0.0).ok_or_else(|| "expected relmse=X with X above 0".to_owned())
 }
 
 /// Settings other than the scene's mean nothing to the truth.

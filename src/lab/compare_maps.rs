@@ -11,13 +11,13 @@ use crate::{
 };
 
 /// The scale ends where this share of the pixels does, so that a few do not take the colour of all others.
-const SCALE_PERCENTILE: f64 = 99.0;
+pub(super) const SCALE_PERCENTILE: f64 = 99.0;
 /// Ends and middle of ColorBrewer's RdBu (Harrower and Brewer 2003).
 const TOO_DARK: [f64; 3] = [33.0, 102.0, 172.0];
 const RIGHT: [f64; 3] = [247.0, 247.0, 247.0];
 const TOO_BRIGHT: [f64; 3] = [178.0, 24.0, 43.0];
 /// Pixels that are left out.
-const MASKED: [u8; 3] = [128; 3];
+pub(super) const MASKED: [u8; 3] = [128; 3];
 /// Errors that are no numbers.
 const NOT_FINITE: [u8; 3] = [255, 0, 255];
 /// File names and PNG files of a comparison; `stem` begins the names.
@@ -48,7 +48,7 @@ fn scale(maps: &Maps) -> f64 {
 }
 
 /// −1 too dark, 0 right, 1 too bright.
-fn diverging(error: f64) -> [u8; 3] {
+pub(super) fn diverging(error: f64) -> [u8; 3] {
     if error.is_nan() {
         return NOT_FINITE;
     }

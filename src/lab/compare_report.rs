@@ -86,7 +86,7 @@ fn by_name<S: Serializer>(measures: &[Measure; 8], serializer: S) -> Result<S::O
     by_name.collect::<Map<_, _>>().serialize(serializer)
 }
 
-fn json(measure: &Measure) -> Value {
+pub(super) fn json(measure: &Measure) -> Value {
     let bound = |bound: Option<f64>| bound.map_or(Value::Null, number);
     serde_json::json!({
         "value": number(measure.value),
@@ -103,7 +103,7 @@ fn number(value: f64) -> Value {
 }
 
 /// Five digits, at any scale.
-fn figure(value: f64) -> String {
+pub(super) fn figure(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
         value if !value.is_finite() => "infinite".to_owned(),

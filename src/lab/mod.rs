@@ -1,6 +1,7 @@
 //! Floor 5: experiments and their reports. A report is data; writers draw tables, Markdown, CSV and JSON from it and
 //! never time anything.
 
+pub mod budget;
 mod catalogue;
 mod colour_bar;
 mod compare;

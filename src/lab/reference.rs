@@ -11,6 +11,7 @@ mod subject;
 
 use std::{ops::ControlFlow, sync::Arc};
 
+pub(super) use kept::picture;
 pub use sparing::Sparing;
 
 use super::{CompareError, LabError, Picture, compare::judged_figure};
@@ -24,7 +25,7 @@ pub const TRUTHS: &str = "truth";
 pub const SUMS: &str = "truth-sums";
 
 /// The layer that photons make; direct light is sampled once and for all.
-const CAUSTIC: &str = "irradiance.caustic";
+pub(super) const CAUSTIC: &str = "irradiance.caustic";
 /// The noise that a truth may have, of the figure that it is to judge.
 const SHARE: f64 = 0.1;
 

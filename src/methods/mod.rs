@@ -47,6 +47,8 @@ pub struct Job<'a> {
     pub scene: &'a Scene,
     /// The rectangles to cover: the receiver region or the scene's extent first, then what else may be seen.
     pub receivers: &'a [Receiver],
+    /// Pixels of the picture.
+    pub size: [u32; 2],
     /// All that the scene holds.
     pub everything: &'a Extent,
     /// The emission views, in the order in which they come.
@@ -62,6 +64,32 @@ pub struct Provided {
     pub surface: Option<SurfaceProvider>,
     /// Images whose texels hold the flux deposited, W.
     pub deposits: Vec<ImageId>,
+}
+
+/// A picture in the chain of a method's error budget; neighbours differ in one thing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// The truth of all paths.
+    AllPaths,
+    /// The truth of the class of paths that is traced.
+    PathClass,
+    /// The landing points of the tracer's photons on a fine grid of light samples, binned exactly.
+    Landings,
+    /// What the method makes of the photons of that fine grid.
+    Fine,
+    /// The picture as it comes.
+    AsAsked,
+}
+
+/// A picture of the chain, and the step that leads to it from the one before.
+#[derive(Clone, Copy, Debug)]
+pub struct Link {
+    /// The picture.
+    pub shown: Shown,
+    /// The step; of the first picture, nothing.
+    pub step: &'static str,
+    /// The settings that this picture is the first to depend on: they move this step, and none before it.
+    pub moved_by: &'static [&'static str],
 }
 
 /// A method being planned.
@@ -94,6 +122,9 @@ pub trait Method: Sync {
     fn columns(&self) -> &'static [Column];
     /// Its stages, which `plan` lists as left out where no photon can come.
     fn stages(&self) -> &'static [&'static str];
+    /// Where its error comes from: the pictures of `nephroid budget`, from the truth of all paths to the picture as it
+    /// comes.
+    fn chain(&self) -> &'static [Link];
     /// Begins planning: images and buffers that all views share.
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError>;
 }

@@ -148,6 +148,7 @@ fn photon_passes(
         settings,
         scene,
         receivers: &receivers,
+        size: job.size,
         everything,
         emissions: &emissions,
         photons: &photons,

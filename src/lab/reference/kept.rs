@@ -35,7 +35,7 @@ pub fn least_noisy(store: &Store, subject: &Subject) -> Option<Picture> {
 }
 
 /// A truth as a picture to judge by. Without specular objects or light it has no caustic: it is dark, and known to be.
-pub fn picture(mut layers: Layers, about: Provenance) -> Picture {
+pub(in crate::lab) fn picture(mut layers: Layers, about: Provenance) -> Picture {
     let values = 3 * layers.width() * layers.height();
     for name in [super::CAUSTIC.to_owned(), format!("{}.variance", super::CAUSTIC)] {
         if layers.get(&name).is_none() {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{
     gpu::{Feature, Format, ImageId, Lifetime, Resource},
-    methods::{Job, Method, Planned, Provided, Slot},
+    methods::{Job, Link, Method, Planned, Provided, Slot},
     passes::{PlanError, light::Column},
     renderer::{Dump, RenderError, Renderer},
     settings::Setting,
@@ -67,6 +67,10 @@ impl Method for Keep {
 
     fn stages(&self) -> &'static [&'static str] {
         &["tracers/keep"]
+    }
+
+    fn chain(&self) -> &'static [Link] {
+        &[]
     }
 
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {

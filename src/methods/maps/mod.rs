@@ -7,7 +7,7 @@ mod views;
 
 use sums::Fixed;
 
-use super::{Job, Method, Planned, Provided, Slot};
+use super::{Job, Link, Method, Planned, Provided, Shown, Slot};
 use crate::{
     gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, Resource, Topology},
     passes::{PlanError, eye::SurfaceProvider, light::Column},
@@ -60,6 +60,22 @@ static SETTINGS: &[Setting] = &[
     Setting::Choice(&RECEIVERS),
 ];
 
+static CHAIN: &[Link] = &[
+    Link { shown: Shown::AllPaths, step: "", moved_by: &[] },
+    Link { shown: Shown::PathClass, step: "path class", moved_by: &["light.paths"] },
+    Link {
+        shown: Shown::Landings,
+        step: "tracer",
+        moved_by: &["light.tracer", "light.view", "light.back", "light.total_reflection", "light.layers"],
+    },
+    Link {
+        shown: Shown::Fine,
+        step: "reconstruction",
+        moved_by: &["maps.side", "maps.splat_size", "maps.gather", "maps.sum", "maps.receivers", "eye.samples"],
+    },
+    Link { shown: Shown::AsAsked, step: "light.side", moved_by: &["light.side"] },
+];
+
 /// Hierarchical caustic maps.
 pub struct Maps;
 
@@ -94,6 +110,10 @@ impl Method for Maps {
 
     fn stages(&self) -> &'static [&'static str] {
         &["maps/gather", "maps/resolve"]
+    }
+
+    fn chain(&self) -> &'static [Link] {
+        CHAIN
     }
 
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {

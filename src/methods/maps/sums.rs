@@ -6,20 +6,13 @@
 use super::{Job, SUM};
 use crate::{
     gpu::{BufferId, ImageId},
-    passes::light::Emission,
-    scene::{LightKind, Scene},
+    passes::light,
 };
 
 /// Every Vulkan device binds storage buffers of this size (`maxStorageBufferRange`).
 const BOUND: u64 = 1 << 27;
 /// Bytes a texel: three bands of 64 bits.
 const BYTES: u64 = 24;
-/// Bits by which the faintest view's photons are told apart, unless the brightest ones' ask for more room.
-const FINE: i32 = 31;
-/// Bits that the brightest photon takes at most: 2^25 of it fit above.
-const COARSE: i32 = 38;
-/// Exponents of float32.
-const EXPONENTS: std::ops::RangeInclusive<i32> = -126..=126;
 /// Invocations along one side of work groups.
 const GROUP: u32 = 8;
 
@@ -40,7 +33,7 @@ pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
         }
         _ => {
             let sums = job.plan.upload_once("maps/sums", &vec![0u8; bytes as usize]);
-            let unit = unit(job.scene, job.emissions, job.photons.side);
+            let unit = light::flux_unit(job.scene, job.emissions, job.photons.side);
             return Some(Fixed { sums, unit: job.plan.upload("maps/unit", &[unit.recip() as f32, unit as f32]) });
         }
     };
@@ -48,30 +41,11 @@ pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
     None
 }
 
-/// The flux that a unit stands for: a power of two, so that scaling by it rounds nothing.
-fn unit(scene: &Scene, emissions: &[Emission], side: u32) -> f64 {
-    let fluxes = emissions.iter().map(|e| most(scene, e, side)).filter(|flux| *flux > 0.0);
-    let [least, most] = fluxes.fold([f64::INFINITY, 0.0], |[least, most], flux| [least.min(flux), most.max(flux)]);
-    let exponent = |flux: f64, bits: i32| (flux.log2().ceil() as i32).saturating_sub(bits);
-    let exponent = exponent(least, FINE).max(exponent(most, COARSE)); // of nothing: the least and the most integer
-    f64::from(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())).exp2()
-}
-
-/// At most what a photon of a view carries, W: the widest texel's footprint in the light's brightest band and direction.
-fn most(scene: &Scene, emission: &Emission, side: u32) -> f64 {
-    let power = match scene.lights[emission.light].kind {
-        LightKind::Directional { irradiance, .. } => irradiance,
-        LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
-    };
-    let window = (emission.view.high - emission.view.low).abs() / f64::from(side);
-    power.into_iter().fold(0.0, f64::max) * window.x * window.y
-}
-
 impl Fixed {
     /// Adds the photons of one view to the sums.
     pub fn gather<T: bytemuck::NoUninit>(&self, pass: crate::gpu::PassBuilder<'_>, push: &T, [side, layers]: [u32; 2]) {
         let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), layers];
-        pass.push(push).read("maps_unit", self.unit).write("maps_sums", self.sums).dispatch(
+        pass.push(push).read("flux_unit", self.unit).write("flux_sums", self.sums).dispatch(
             "maps/gather_fixed.comp",
             groups,
             GROUP * GROUP,

@@ -10,6 +10,7 @@ mod emission;
 mod images;
 mod photons;
 mod tracer;
+mod unit;
 
 use crate::{
     scene::{PathClass, Scene},
@@ -20,6 +21,7 @@ pub use emission::{Emission, emissions, view_name};
 pub use images::Bench;
 pub use photons::{Column, Photons, Tracing, photon_buffer, photons};
 pub use tracer::{BACK, TOTAL_REFLECTION, TRACER, Tracer};
+pub use unit::flux_unit;
 
 /// Photons a side of an emission view.
 pub static SIDE: Whole = Whole {

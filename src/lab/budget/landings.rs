@@ -1,0 +1,130 @@
+//! Where the tracer's photons land, binned exactly: no reconstruction, in the place of a method.
+
+use crate::{
+    gpu::{BufferId, Feature, Gpu, Resource},
+    lab::picture::REGION,
+    methods::{Job, Link, Method, Planned, Provided, Slot},
+    passes::{
+        PlanError, eye,
+        light::{self, Column},
+    },
+    renderer::{self, Dump, Frame, Providers, RenderError, Renderer},
+    settings::Setting,
+};
+
+/// Invocations along one side of the dispatch's work groups.
+const GROUP: u32 = 8;
+/// Words a pixel: three bands of 64 bits.
+const WORDS: usize = 6;
+
+/// Takes the place of a method in a job of the camera `region`; it bins into that picture's pixels.
+struct Landings;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct BinPush {
+    size: [i32; 2],
+    receiver: u32,
+}
+
+impl Method for Landings {
+    fn name(&self) -> &'static str {
+        "landings"
+    }
+
+    fn title(&self) -> &'static str {
+        "photons, binned where they land"
+    }
+
+    fn paper(&self) -> &'static str {
+        "none"
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::Surface]
+    }
+
+    fn needs(&self) -> &'static [Feature] {
+        &[]
+    }
+
+    fn settings(&self) -> &'static [Setting] {
+        &[]
+    }
+
+    fn columns(&self) -> &'static [Column] {
+        &[Column::Hit, Column::Flux]
+    }
+
+    fn stages(&self) -> &'static [&'static str] {
+        &["budget/bin"]
+    }
+
+    fn chain(&self) -> &'static [Link] {
+        &[]
+    }
+
+    fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
+        let view = eye::view(&job.scene.cameras[REGION], job.size, job.everything);
+        let pixels = pixels(job.size);
+        let unit = light::flux_unit(job.scene, job.emissions, job.photons.side);
+        Ok(Box::new(Binning {
+            size: job.size,
+            view: job.plan.upload("budget/view", &[view.data()]),
+            sums: job.plan.upload_once("budget/sums", &vec![0u32; WORDS * pixels]),
+            unit: job.plan.upload("budget/unit", &[unit.recip() as f32, unit as f32]),
+        }))
+    }
+}
+
+struct Binning {
+    size: [u32; 2],
+    view: BufferId,
+    sums: BufferId,
+    unit: BufferId,
+}
+
+impl Planned for Binning {
+    fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
+        ("tracers/takes_all.glsl", Vec::new())
+    }
+
+    fn gather(&mut self, job: &mut Job<'_>, _view: usize, name_of: &dyn Fn(&str) -> String) {
+        let groups = job.photons.side.div_ceil(GROUP);
+        let receiver = job.scene.region.receiver as u32;
+        let push = BinPush { size: self.size.map(|n| n as i32), receiver };
+        let pass = job.photons.define(job.plan.pass(&name_of("budget/bin")));
+        let pass = pass.with(job.photons.fetch(&[Column::Hit, Column::Flux])).read("budget_view", self.view);
+        let pass = pass.read("flux_unit", self.unit).write("flux_sums", self.sums).push(&push);
+        pass.dispatch("budget/bin.comp", [groups, groups, job.photons.layers()], GROUP * GROUP);
+    }
+
+    fn provide(&self) -> Provided {
+        Provided { surface: None, deposits: Vec::new() }
+    }
+}
+
+fn pixels([width, height]: [u32; 2]) -> usize {
+    width as usize * height as usize
+}
+
+/// W/m² of each pixel of a picture of the region, three bands, rows from the top: the flux of the photons that land in it
+/// over its area.
+pub(super) fn landings(gpu: &Gpu, job: &renderer::Job) -> Result<Vec<f32>, RenderError> {
+    let providers = Providers { surface: Some(&Landings), medium: None };
+    let mut job = renderer::Job { providers, ..job.clone() };
+    job.settings.set(&renderer::all_settings(), eye::SAMPLES.key, "1").expect("one eye sample a pixel is allowed");
+    let pixels = pixels(job.size);
+    let mut renderer = Renderer::new(gpu, &job)?;
+    renderer.frame(&Frame { time: job.scene.time, ..Frame::default() })?;
+    if !renderer.stages().iter().any(|stage| stage.starts_with("budget/bin")) {
+        return Ok(vec![0.0; 3 * pixels]); // without light on anything specular nothing lands
+    }
+    let (Dump::Buffer(sums), Dump::Buffer(unit)) = (renderer.dump("budget/sums")?, renderer.dump("budget/unit")?)
+    else {
+        return Ok(Vec::new()); // no buffer of this room's is an image
+    };
+    let watts = f64::from(f32::from_bits(unit[1])) * pixels as f64 / job.scene.region.area();
+    let word = |pair: &[u32]| u64::from(pair[0]) | u64::from(pair[1]) << 32;
+    Ok(sums.chunks_exact(2).map(|pair| (word(pair) as f64 * watts) as f32).collect())
+}
