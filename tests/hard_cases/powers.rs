@@ -40,6 +40,10 @@ fn hundred() -> Vec<Light> {
     (0..100).map(|k| Light { name: format!("lamp{k}"), kind: kind(k) }).collect()
 }
 
+/// A ray that passes the sphere this near, m, may be taken for one that meets it: the points of a rasterised picture lie
+/// some 2·10⁻⁵ m beside their pixels' centres on GPUs (NVIDIA H200; on lavapipe not).
+const TANGENT: f64 = 1e-4;
+
 #[test]
 fn a_hundred_lights_are_the_sum_of_each() {
     let mut many = scene("glass-sphere", &[]);
@@ -53,15 +57,19 @@ fn a_hundred_lights_are_the_sum_of_each() {
     close("emitted", picture.energy.emitted_w, emitted, 3.0 * SILHOUETTE);
     // Past the sphere, the sum of what each sends there.
     let pixels = Pixels { region: &many.region, size: [16; 2] };
-    let passes = |from: DVec3, to: DVec3| {
+    let beside = |from: DVec3, to: DVec3| {
         let way = (to - from).normalize();
-        (from - way * from.dot(way)).length() > 1.0
+        (from - way * from.dot(way)).length() - 1.0
     };
+    let passes = |from: DVec3, to: DVec3| beside(from, to) > 0.0;
     let exact = pixels
         .centres()
         .map(|p| places.iter().filter(|l| passes(**l, p)).map(|l| direct_point(*l, 1.0, p, DVec3::Y)).sum::<f64>());
     let sum: f64 = exact.sum();
-    close("direct light", picture.sum("irradiance.direct"), sum, ROUNDING);
+    let pairs = pixels.centres().flat_map(|p| places.iter().map(move |l| (*l, p)));
+    let doubtful =
+        pairs.filter(|(l, p)| beside(*l, *p).abs() < TANGENT).map(|(l, p)| direct_point(l, 1.0, p, DVec3::Y));
+    close("direct light", picture.sum("irradiance.direct"), sum, ROUNDING + doubtful.sum::<f64>() / sum);
 }
 
 #[test]
