@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 done, 1 failed, 2 usage, 3 threshold exceeded, 4 no such device or display, 130 interrupted.
 
+mod against;
 mod args;
 mod budget;
 mod compare;
@@ -50,6 +51,8 @@ enum Command {
     Budget(budget::BudgetArgs),
     /// Hold every tracer against exact intersection on a scene's light, texel by texel
     Tracers(tracers::TracersArgs),
+    /// Say what changed between two runs of scripts/bench, and by how much beyond noise
+    Against(against::AgainstArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -77,6 +80,7 @@ impl Cli {
             Command::Truth(args) => truth::run(&args),
             Command::Budget(args) => budget::run(&args),
             Command::Tracers(args) => tracers::run(&args),
+            Command::Against(args) => against::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Doctor(args) => list::doctor(&args),

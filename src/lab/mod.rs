@@ -1,6 +1,7 @@
 //! Floor 5: experiments and their reports. A report is data; writers draw tables, Markdown, CSV and JSON from it and
 //! never time anything.
 
+mod against;
 pub mod budget;
 mod catalogue;
 mod colour_bar;
@@ -26,6 +27,7 @@ mod table;
 pub mod timing;
 mod tracers;
 
+pub use against::{AgainstError, AgainstReport, BenchLines};
 pub use catalogue::{MethodsReport, ScenesReport};
 pub use compare::{Comparison, Constants, MEASURES, compare};
 pub use compare_error::CompareError;

@@ -81,6 +81,19 @@ pub fn bootstrap_ratio(pairs: &[(f64, f64)], confidence: f64, seed: u64) -> Inte
     bootstrap_median(&ratios, confidence, seed)
 }
 
+/// How many times as large the median of `after` is as that of `before`, of samples that came apart: the quotients that
+/// the intervals of both medians allow, each at half the doubt.
+pub fn bootstrap_change(before: &[f64], after: &[f64], confidence: f64, seed: u64) -> Interval {
+    // Both hold at once with at least the confidence asked for (Bonferroni).
+    let each = 1.0 - 0.5 * (1.0 - confidence);
+    let [a, b] = [before, after].map(|samples| bootstrap_median(samples, each, seed));
+    if !(a.value > 0.0 && b.value.is_finite()) {
+        return Interval::UNKNOWN;
+    }
+    let high = if a.low > 0.0 { b.high / a.low } else { f64::INFINITY };
+    Interval { value: b.value / a.value, low: b.low / a.high, high }
+}
+
 /// All of n samples lie on one side of the true median in 2^(1-n) of all cases: with fewer than these, even the whole
 /// range of the sample is no interval of this confidence.
 fn least_samples(confidence: f64) -> usize {
@@ -160,6 +173,16 @@ mod tests {
         }
         assert_eq!(bootstrap_ratio(&[(0.0, 1.0); 9], CONFIDENCE, 0), Interval::UNKNOWN);
         assert_eq!(bootstrap_ratio(&[(2.0, 3.0); 9], CONFIDENCE, 0).value, 1.5);
+    }
+
+    #[test]
+    fn what_came_apart_is_compared_more_carefully() {
+        let sample = |level: f64| (0..20).map(|k| level * (1.0 + 0.002 * f64::from(k * 7 % 11))).collect::<Vec<_>>();
+        let more = bootstrap_change(&sample(1.0), &sample(1.1), CONFIDENCE, 0);
+        assert!((more.value - 1.1).abs() < 1e-12 && more.low > 1.05 && more.high < 1.15, "{more:?}");
+        assert!(bootstrap_change(&sample(1.0), &sample(1.001), CONFIDENCE, 0).contains(1.0));
+        assert!(bootstrap_change(&[1.0], &[9.0], CONFIDENCE, 0).contains(1.0), "one sample says nothing");
+        assert_eq!(bootstrap_change(&[0.0; 20], &sample(1.0), CONFIDENCE, 0), Interval::UNKNOWN);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 mod bootstrap;
 mod series;
 
-pub use bootstrap::{CONFIDENCE, Interval, bootstrap_median, bootstrap_ratio};
+pub use bootstrap::{CONFIDENCE, Interval, bootstrap_change, bootstrap_median, bootstrap_ratio};
 pub use series::{Change, Moves, change_of, is_settled};
 
 /// The middle value; the mean of the two middle ones for an even count.

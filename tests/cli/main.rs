@@ -1,5 +1,6 @@
 //! The program as a user runs it: every command and format, its files, its exit codes, its messages.
 
+mod against;
 mod bad_options;
 mod bad_scenes;
 mod doctor;
