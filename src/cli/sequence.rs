@@ -17,7 +17,7 @@ use super::{
     signals,
 };
 use crate::{
-    gpu::Gpu,
+    gpu::{Gpu, Sources},
     image::{self, Layers},
     lab::{self, LabError, Provenance, Report, Run, Sequence, SequenceFrame, SequenceReport},
     renderer::{self, Frame, Job, Renderer},
@@ -52,7 +52,8 @@ pub fn run(args: &RenderArgs, sequence: Sequence) -> Result<(), Failure> {
     let mut frames = making.made_before();
     let count = sequence.frames();
     if (frames.len() as u32) < count {
-        let mut renderer = Renderer::planned(&gpu, &job, planned).map_err(|error| with_remedy(error, &job))?;
+        let mut renderer =
+            Renderer::planned(&gpu, &job, planned, Sources::default()).map_err(|error| with_remedy(error, &job))?;
         making.make(&mut renderer, &mut frames, &stop)?;
     }
     refuse_messages(&gpu)?;
