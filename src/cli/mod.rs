@@ -11,6 +11,7 @@ mod progress;
 mod render;
 mod sequence;
 mod signals;
+mod sweep;
 mod tracers;
 mod truth;
 mod view;
@@ -47,6 +48,8 @@ enum Command {
     Truth(truth::TruthArgs),
     /// Hold every tracer against exact intersection on a scene's light, texel by texel
     Tracers(tracers::TracersArgs),
+    /// Do many points, scenes × methods × settings, in shards that may be killed; each is kept as soon as it is done
+    Sweep(sweep::SweepArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -73,6 +76,7 @@ impl Cli {
             Command::Compare(args) => compare::run(&args),
             Command::Truth(args) => truth::run(&args),
             Command::Tracers(args) => tracers::run(&args),
+            Command::Sweep(args) => sweep::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Doctor(args) => list::doctor(&args),

@@ -12,7 +12,7 @@ use super::{
     Failure,
     args::RenderArgs,
     output::{print, say, warn},
-    progress::SequenceProgress,
+    progress::CountProgress,
     render::{arguments, open, refuse_messages, with_remedy},
     signals,
 };
@@ -102,7 +102,7 @@ impl Making<'_> {
     /// Makes what is missing; those that are there stay, whatever ends it.
     fn make(&self, renderer: &mut Renderer, frames: &mut Vec<SequenceFrame>, stop: &AtomicBool) -> Result<(), Failure> {
         let count = self.sequence.frames();
-        let progress = SequenceProgress::new(count);
+        let progress = CountProgress::new(count);
         let missing: Vec<u32> = (0..count).filter(|k| frames.iter().all(|frame| frame.index != *k)).collect();
         for index in missing.iter().take(1) {
             (0..self.args.warmup).try_for_each(|_| renderer.frame(&self.frame(*index)).map(drop))?;
@@ -112,7 +112,7 @@ impl Making<'_> {
             if stop.load(Relaxed) {
                 return Err(LabError::Stopped { done: frames.len(), count: count as usize }.into());
             }
-            progress.at(frames.len(), index);
+            progress.at(frames.len(), &format!("frame {index}"));
             let made = self.one(renderer, index)?;
             if made.was_planned_again() {
                 progress.say(&format!("frame {index}: planned again, more changed than what buffers hold"));
