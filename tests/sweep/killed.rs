@@ -3,7 +3,7 @@
 use std::{
     process::{Child, Stdio},
     thread::sleep,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use rand::{RngExt, SeedableRng};
@@ -14,8 +14,12 @@ use crate::{Place, truth};
 
 const SHARDS: usize = 4;
 const KILLS: usize = 20;
-/// Between two kills, ms: about as long as some points take, starting included.
-const BETWEEN: std::ops::Range<u64> = 50..500;
+const POINTS: usize = 200;
+/// From a point's end to a kill, ms: about as long as a point takes.
+const LATER: std::ops::Range<u64> = 0..60;
+
+/// Ten times what it takes on two busy cores.
+const LONGEST: Duration = Duration::from_secs(300);
 
 /// What a clock makes of a point, and nothing else does.
 const TIMES: [&str; 4] = ["time", "stages", "alone", "warnings"];
@@ -23,6 +27,11 @@ const TIMES: [&str; 4] = ["time", "stages", "alone", "warnings"];
 fn start(place: &Place, shard: usize) -> Child {
     let mut command = place.command(&format!("run --patience 0 --shard {}/{SHARDS}", shard + 1));
     command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+}
+
+/// Points that are whole; what a killed writer left beside them is none.
+fn done(place: &Place) -> usize {
+    place.entries().iter().filter(|path| !path.to_string_lossy().contains(".writing-")).count()
 }
 
 fn timeless(points: Vec<Value>) -> Vec<Value> {
@@ -37,17 +46,29 @@ fn timeless(points: Vec<Value>) -> Vec<Value> {
     points.into_iter().map(without).collect()
 }
 
-fn survive(axes: &str, points: usize, kills: usize) {
-    let sweep = format!("reference = \"truth.exr\"\n[set]\neye.samples = 1\n{axes}");
+#[test]
+fn two_hundred_points_survive_twenty_kills() {
+    let sides: Vec<String> = (4..24).map(|side| side.to_string()).collect();
+    let sides = sides.join(", ");
+    let sweep = format!(
+        "reference = \"truth.exr\"\n[set]\neye.samples = 1\nlight.side = [{sides}]\n\
+         maps.side = [4, 5, 6, 7, 8, 9, 10, 11, 12, 13]\n"
+    );
     let [calm, killed] = [(); 2].map(|()| Place::warm(&sweep));
     truth(calm.folder.path());
     std::fs::copy(calm.folder.path().join("truth.exr"), killed.folder.path().join("truth.exr")).unwrap();
     calm.run("run").code(0);
 
+    let begun = Instant::now();
     let mut random = Pcg64Mcg::seed_from_u64(6);
     let mut running: Vec<Child> = (0..SHARDS).map(|shard| start(&killed, shard)).collect();
-    for _ in 0..kills {
-        sleep(Duration::from_millis(random.random_range(BETWEEN)));
+    for kill in 1..=KILLS {
+        // Spread over the whole sweep, however fast it goes.
+        while done(&killed) < POINTS * kill / (KILLS + 1) {
+            assert!(begun.elapsed() < LONGEST, "the shards got stuck");
+            sleep(Duration::from_millis(5));
+        }
+        sleep(Duration::from_millis(random.random_range(LATER)));
         let shard = random.random_range(0..SHARDS);
         running[shard].kill().unwrap();
         running[shard].wait().unwrap();
@@ -56,25 +77,8 @@ fn survive(axes: &str, points: usize, kills: usize) {
     for child in &mut running {
         assert!(child.wait().unwrap().success());
     }
-    let done = killed.entries().into_iter().filter(|path| !path.to_string_lossy().contains(".writing-"));
-    assert_eq!(done.count(), points);
+    assert_eq!(done(&killed), POINTS);
     let [calm, killed] = [calm, killed].map(|place| timeless(place.merged()));
-    assert_eq!((calm.len(), killed.len()), (points, points));
+    assert_eq!((calm.len(), killed.len()), (POINTS, POINTS));
     assert!(calm == killed, "what was killed differs from what was not");
-}
-
-#[test]
-fn points_of_shards_that_are_killed_equal_the_uninterrupted() {
-    survive("light.side = [4, 5, 6, 7, 8, 9]\nmaps.side = [4, 8, 16, 32]\n", 24, KILLS / 4);
-}
-
-#[test]
-#[ignore = "two minutes on a software device"]
-fn two_hundred_points_survive_twenty_kills() {
-    let sides: Vec<String> = (4..24).map(|side| side.to_string()).collect();
-    survive(
-        &format!("light.side = [{}]\nmaps.side = [4, 5, 6, 7, 8, 9, 10, 11, 12, 13]\n", sides.join(", ")),
-        200,
-        KILLS,
-    );
 }

@@ -64,8 +64,8 @@ impl Place {
 
     /// Files of points in the store.
     fn entries(&self) -> Vec<PathBuf> {
-        let mut files: Vec<_> =
-            fs::read_dir(self.store().join("point")).unwrap().map(|entry| entry.unwrap().path()).collect();
+        let points = fs::read_dir(self.store().join("point")).into_iter().flatten();
+        let mut files: Vec<_> = points.map(|entry| entry.unwrap().path()).collect();
         files.sort();
         files
     }

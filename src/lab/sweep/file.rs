@@ -61,6 +61,9 @@ fn seconds() -> f64 {
     120.0
 }
 
+/// Keys and values, as they would be typed.
+type Pairs = Vec<(String, String)>;
+
 /// A key of `[set]` with its values as they would be typed.
 struct Axis {
     key: String,
@@ -204,7 +207,7 @@ fn typed(value: &Value) -> String {
 }
 
 /// One value of each axis, the last one changing fastest.
-fn product(axes: &[Axis]) -> Vec<Vec<(String, String)>> {
+fn product(axes: &[Axis]) -> Vec<Pairs> {
     axes.iter().fold(vec![Vec::new()], |points, axis| {
         let with = |point: &Vec<(String, String)>, value: &String| {
             point.iter().cloned().chain([(axis.key.clone(), value.clone())]).collect()
@@ -219,7 +222,7 @@ struct Reader<'f> {
     folder: &'f Path,
     parsed: &'f SweepFile,
     /// By name and overrides.
-    loaded: BTreeMap<(usize, Vec<(String, String)>), Arc<Scene>>,
+    loaded: BTreeMap<(usize, Pairs), Arc<Scene>>,
 }
 
 impl Reader<'_> {
@@ -243,7 +246,7 @@ impl Reader<'_> {
         Ok(job)
     }
 
-    fn scene(&mut self, at: usize, overrides: Vec<(String, String)>) -> Result<Arc<Scene>, SceneError> {
+    fn scene(&mut self, at: usize, overrides: Pairs) -> Result<Arc<Scene>, SceneError> {
         let key = (at, overrides);
         if let Some(scene) = self.loaded.get(&key) {
             return Ok(scene.clone());
