@@ -137,9 +137,9 @@ impl Renderer {
         Self::prepare(gpu, job, plan(job)?, sources, Store::open(), None)
     }
 
-    /// As [`Self::new`], with the plan of this very job made before.
-    pub fn planned(gpu: &Gpu, job: &Job, planned: Planned) -> Result<Self, RenderError> {
-        Self::prepare(gpu, job, planned, Sources::default(), Store::open(), None)
+    /// As [`Self::with_sources`], with the plan of this very job made before.
+    pub fn planned(gpu: &Gpu, job: &Job, planned: Planned, sources: Sources) -> Result<Self, RenderError> {
+        Self::prepare(gpu, job, planned, sources, Store::open(), None)
     }
 
     /// Plans again for a changed job; what did not change is kept.

@@ -5,7 +5,7 @@ use std::{fmt, io, process::ExitCode};
 use crate::{
     gpu::GpuError,
     image::ImageError,
-    lab::{CompareError, LabError},
+    lab::{CompareError, LabError, sweep::SweepError},
     names::NoSuch,
     passes::PlanError,
     renderer::RenderError,
@@ -45,6 +45,11 @@ impl Failure {
     /// It was done, and a figure exceeds what was asked for.
     pub(super) fn threshold(error: impl Into<anyhow::Error>) -> Self {
         Self { code: THRESHOLD, error: error.into() }
+    }
+
+    /// Ctrl-C, with what it leaves.
+    pub(super) fn interrupted(error: impl Into<anyhow::Error>) -> Self {
+        Self { code: INTERRUPTED, error: error.into() }
     }
 
     /// Nothing here can do it.
@@ -112,6 +117,16 @@ impl From<LabError> for Failure {
         match error {
             LabError::Render(error) => error.into(),
             LabError::Interrupted | LabError::Stopped { .. } => Self { code: INTERRUPTED, error: error.into() },
+            other => Self::failed(other),
+        }
+    }
+}
+
+impl From<SweepError> for Failure {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Written(error) => error.into(),
+            SweepError::Lab(error) => error.into(),
             other => Self::failed(other),
         }
     }

@@ -13,6 +13,7 @@ mod progress;
 mod render;
 mod sequence;
 mod signals;
+mod sweep;
 mod tracers;
 mod truth;
 mod view;
@@ -53,6 +54,8 @@ enum Command {
     Tracers(tracers::TracersArgs),
     /// Say what changed between two runs of scripts/bench, and by how much beyond noise
     Against(against::AgainstArgs),
+    /// Do many points, scenes × methods × settings, in shards that may be killed; each is kept as soon as it is done
+    Sweep(sweep::SweepArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -81,6 +84,7 @@ impl Cli {
             Command::Budget(args) => budget::run(&args),
             Command::Tracers(args) => tracers::run(&args),
             Command::Against(args) => against::run(&args),
+            Command::Sweep(args) => sweep::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Doctor(args) => list::doctor(&args),

@@ -41,19 +41,19 @@ impl Drop for Progress {
     }
 }
 
-/// Of a sequence: how many frames are there.
-pub struct SequenceProgress(ProgressBar);
+/// How many of several are done: frames of a sequence, points of a sweep.
+pub struct CountProgress(ProgressBar);
 
-impl SequenceProgress {
-    pub fn new(frames: u32) -> Self {
+impl CountProgress {
+    pub fn new(count: u32) -> Self {
         let style = ProgressStyle::with_template("{msg:14} {wide_bar} {pos}/{len} {elapsed} {eta} left");
-        let bar = ProgressBar::new(u64::from(frames)).with_message("preparing");
+        let bar = ProgressBar::new(u64::from(count)).with_message("preparing");
         Self(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
     }
 
-    pub fn at(&self, done: usize, frame: u32) {
+    pub fn at(&self, done: usize, what: &str) {
         self.0.set_position(done as u64);
-        self.0.set_message(format!("frame {frame}"));
+        self.0.set_message(what.to_owned());
     }
 
     /// A line beside the bar.
@@ -62,7 +62,7 @@ impl SequenceProgress {
     }
 }
 
-impl Drop for SequenceProgress {
+impl Drop for CountProgress {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }

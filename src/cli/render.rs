@@ -16,7 +16,7 @@ use super::{
     sequence, signals,
 };
 use crate::{
-    gpu::{DeviceChoice, Gpu, GpuError, GpuOptions, Plan},
+    gpu::{DeviceChoice, Gpu, GpuError, GpuOptions, Plan, Sources},
     lab::{self, Experiment, Measured, Provenance, RenderReport, Report, Run},
     passes::eye,
     renderer::{self, Frame, Job, Planned, RenderError, Renderer},
@@ -71,7 +71,8 @@ fn measure(
     (started, stop): (Instant, &AtomicBool),
 ) -> Result<(Renderer, Measured, f64), Failure> {
     let progress = Progress::new(experiment);
-    let mut renderer = Renderer::planned(gpu, job, planned).map_err(|error| with_remedy(error, job))?;
+    let mut renderer =
+        Renderer::planned(gpu, job, planned, Sources::default()).map_err(|error| with_remedy(error, job))?;
     let startup_ms = started.elapsed().as_secs_f64() * 1e3;
     let measured = experiment.run(&mut renderer, &mut |step| {
         progress.at(step);

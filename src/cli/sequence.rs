@@ -12,12 +12,12 @@ use super::{
     Failure,
     args::RenderArgs,
     output::{print, say, warn},
-    progress::SequenceProgress,
+    progress::CountProgress,
     render::{arguments, open, refuse_messages, with_remedy},
     signals,
 };
 use crate::{
-    gpu::Gpu,
+    gpu::{Gpu, Sources},
     image::{self, Layers},
     lab::{self, LabError, Provenance, Report, Run, Sequence, SequenceFrame, SequenceReport},
     renderer::{self, Frame, Job, Renderer},
@@ -52,7 +52,8 @@ pub fn run(args: &RenderArgs, sequence: Sequence) -> Result<(), Failure> {
     let mut frames = making.made_before();
     let count = sequence.frames();
     if (frames.len() as u32) < count {
-        let mut renderer = Renderer::planned(&gpu, &job, planned).map_err(|error| with_remedy(error, &job))?;
+        let mut renderer =
+            Renderer::planned(&gpu, &job, planned, Sources::default()).map_err(|error| with_remedy(error, &job))?;
         making.make(&mut renderer, &mut frames, &stop)?;
     }
     refuse_messages(&gpu)?;
@@ -101,7 +102,7 @@ impl Making<'_> {
     /// Makes what is missing; those that are there stay, whatever ends it.
     fn make(&self, renderer: &mut Renderer, frames: &mut Vec<SequenceFrame>, stop: &AtomicBool) -> Result<(), Failure> {
         let count = self.sequence.frames();
-        let progress = SequenceProgress::new(count);
+        let progress = CountProgress::new(count);
         let missing: Vec<u32> = (0..count).filter(|k| frames.iter().all(|frame| frame.index != *k)).collect();
         for index in missing.iter().take(1) {
             (0..self.args.warmup).try_for_each(|_| renderer.frame(&self.frame(*index)).map(drop))?;
@@ -111,7 +112,7 @@ impl Making<'_> {
             if stop.load(Relaxed) {
                 return Err(LabError::Stopped { done: frames.len(), count: count as usize }.into());
             }
-            progress.at(frames.len(), index);
+            progress.at(frames.len(), &format!("frame {index}"));
             let made = self.one(renderer, index)?;
             if made.was_planned_again() {
                 progress.say(&format!("frame {index}: planned again, more changed than what buffers hold"));

@@ -6,7 +6,10 @@ use shaderc::{
 };
 use std::collections::BTreeMap;
 
-use super::error::GpuError;
+use super::{
+    error::GpuError,
+    plan::{Plan, Work},
+};
 use crate::store::{Key, Store};
 
 static EMBEDDED: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
@@ -106,6 +109,8 @@ impl Sources {
         defines: &[(String, String)],
         provided: &[(String, String)],
     ) -> Result<Vec<u32>, String> {
+        // Only what the key holds is served: nothing else can be part of the SPIR-V.
+        let reached = self.reached(file, provided);
         let compiler = Compiler::new().map_err(|e| e.to_string())?;
         let mut options = CompileOptions::new().map_err(|e| e.to_string())?;
         options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
@@ -115,9 +120,9 @@ impl Sources {
             options.add_macro_definition(name, Some(value));
         }
         options.set_include_callback(|asked, _, from, _| {
-            let path = provided.iter().find(|(name, _)| name == asked).map_or(asked, |(_, path)| path);
-            let content = self.text(path).ok_or_else(|| format!("{from} includes {path}, which is not in glsl/"))?;
-            Ok(ResolvedInclude { resolved_name: path.to_owned(), content: content.to_owned() })
+            let path = provided_for(asked, provided);
+            let content = reached.get(path).ok_or_else(|| format!("{from} includes {path}, which is not in glsl/"))?;
+            Ok(ResolvedInclude { resolved_name: path.to_owned(), content: (*content).to_owned() })
         });
         let binary = compiler
             .compile_into_spirv(source, kind.shaderc(), file, "main", Some(&options))
@@ -125,28 +130,59 @@ impl Sources {
         Ok(binary.as_binary().to_vec())
     }
 
-    /// What the SPIR-V depends on: every GLSL file (an include may reach any of them), the defines, this build.
+    /// What the SPIR-V depends on: the file and what it includes, the defines, this build.
     fn key(&self, file: &str, defines: &[(String, String)], provided: &[(String, String)]) -> Key {
         let mut inputs: Vec<&[u8]> = vec![file.as_bytes(), env!("CARGO_PKG_VERSION").as_bytes()];
-        embedded(&EMBEDDED, &mut inputs);
-        for (a, b) in self.replaced.iter().chain(defines.iter().chain(provided).map(|(a, b)| (a, b))) {
-            inputs.extend([a.as_bytes(), b.as_bytes()]);
+        for (path, text) in self.reached(file, provided) {
+            inputs.extend([path.as_bytes(), text.as_bytes()]);
+        }
+        for (name, value) in defines.iter().chain(provided) {
+            inputs.extend([name.as_bytes(), value.as_bytes()]);
         }
         Key::of(inputs)
     }
+
+    /// What all shaders of a plan depend on: it changes with any file that one of its passes compiles or includes, and
+    /// with no other.
+    pub fn plan_key(&self, plan: &Plan) -> Key {
+        let keys = plan.passes.iter().flat_map(|pass| {
+            let files = match &pass.work {
+                Work::Compute { shader, .. } => std::slice::from_ref(shader),
+                Work::Raster { shaders, .. } => shaders.as_slice(),
+            };
+            files.iter().map(|file| self.key(file, &pass.defines, &pass.provided).to_string())
+        });
+        Key::of(keys)
+    }
+
+    /// A file and all that it includes, however deep and under whichever condition, by path.
+    fn reached<'s>(&'s self, file: &'s str, provided: &'s [(String, String)]) -> BTreeMap<&'s str, &'s str> {
+        let (mut reached, mut waiting) = (BTreeMap::new(), vec![file]);
+        while let Some(path) = waiting.pop() {
+            let Some(text) = self.text(path).filter(|_| !reached.contains_key(path)) else { continue };
+            reached.insert(path, text);
+            waiting.extend(includes(text).map(|asked| provided_for(asked, provided)));
+        }
+        reached
+    }
+}
+
+/// What the lines `#include "FILE"` of a text name.
+fn includes(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter_map(|line| {
+        let directive = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
+        let (_, rest) = directive.split_once('"')?;
+        Some(rest.split_once('"')?.0)
+    })
+}
+
+/// The file that an include means.
+fn provided_for<'s>(asked: &'s str, provided: &'s [(String, String)]) -> &'s str {
+    provided.iter().find(|(name, _)| name == asked).map_or(asked, |(_, path)| path)
 }
 
 /// The version of SPIR-V that the compiler writes.
 pub fn spirv_version() -> String {
     let (version, _) = shaderc::get_spirv_version();
     format!("{}.{}", version >> 16, version >> 8 & 0xff)
-}
-
-fn embedded<'d>(folder: &'d Dir<'_>, inputs: &mut Vec<&'d [u8]>) {
-    for file in folder.files() {
-        inputs.extend([file.path().as_os_str().as_encoded_bytes(), file.contents()]);
-    }
-    for inner in folder.dirs() {
-        embedded(inner, inputs);
-    }
 }

@@ -26,6 +26,14 @@ pub enum LabError {
     /// A file that cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A host's lock that cannot be opened.
+    #[error("cannot open the lock {}: {reason}", path.display())]
+    Lock {
+        /// Its file.
+        path: std::path::PathBuf,
+        /// The system's.
+        reason: std::io::Error,
+    },
     /// Whoever watches said to stop.
     #[error("interrupted: nothing was written")]
     Interrupted,

@@ -23,6 +23,7 @@ mod render_report;
 mod report;
 mod scene_report;
 mod sequence;
+pub mod sweep;
 mod table;
 pub mod timing;
 mod tracers;

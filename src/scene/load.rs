@@ -115,7 +115,7 @@ fn unreadable(file: &str, expected: &str, found: &str, remedy: &str) -> SceneErr
 }
 
 /// The text is no TOML.
-fn malformed(file: &str, text: &str, error: &toml::de::Error) -> SceneError {
+pub fn malformed(file: &str, text: &str, error: &toml::de::Error) -> SceneError {
     SceneError {
         place: Box::new(place_in(file, text.as_bytes(), error.span().map_or(0, |span| span.start))),
         key: String::new(),
@@ -170,7 +170,7 @@ fn shown(value: &DeValue) -> String {
 }
 
 /// The TOML is no scene: serde's message, taken apart into our form.
-fn misfit(locator: &Locator, error: &toml::de::Error) -> SceneError {
+pub fn misfit(locator: &Locator, error: &toml::de::Error) -> SceneError {
     let text = error.to_string();
     let path = text.lines().find_map(|line| line.strip_prefix("in `")?.strip_suffix('`')).unwrap_or_default();
     let at = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };

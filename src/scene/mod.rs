@@ -48,6 +48,7 @@ mod sine;
 mod slide;
 mod track;
 mod wave;
+mod written;
 
 use crate::names::NoSuch;
 
@@ -61,6 +62,7 @@ pub use picture::{MOST_PIXELS, Picture, Texture};
 pub use sheet::Sheet;
 pub use slide::Slide;
 pub use wave::Wave;
+pub use written::Written;
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.
 #[derive(Clone, Debug)]

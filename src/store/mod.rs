@@ -104,10 +104,37 @@ impl Store {
 
     /// Keeps content under a key, in place of any other. If it cannot be kept, that is said once, and is no error.
     pub fn put(&self, kind: &str, key: &Key, content: &[u8]) {
-        let Some(folder) = self.kind_folder(kind) else { return };
-        if let Err(error) = replace(&folder, &key.to_string(), &entry::seal(kind, key, content)) {
-            warn_once(&format!("cannot write to the cache {}: {error}", folder.display()));
+        let Some(folder) = &self.folder else { return };
+        if let Err(error) = self.keep(kind, key, content) {
+            warn_once(&format!("cannot write to the cache {}: {error}", folder.join(kind).display()));
         }
+    }
+
+    /// As [`Store::put`], where what is not kept is lost work.
+    ///
+    /// # Errors
+    /// The system's; the entry is then as it was before.
+    pub fn keep(&self, kind: &str, key: &Key, content: &[u8]) -> io::Result<()> {
+        let Some(folder) = self.kind_folder(kind) else { return Err(io::ErrorKind::NotFound.into()) };
+        replace(&folder, &key.to_string(), &entry::seal(kind, key, content))
+    }
+
+    /// Removes an entry, and says whether there was one.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn remove(&self, kind: &str, key: &Key) -> io::Result<bool> {
+        let Some(path) = self.file(kind, key) else { return Ok(false) };
+        match fs::remove_file(path) {
+            Ok(()) => Ok(true),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Where an entry lies, if there is one or not.
+    pub fn file(&self, kind: &str, key: &Key) -> Option<PathBuf> {
+        Some(self.kind_folder(kind)?.join(key.to_string()))
     }
 
     /// Every kind of which there are entries, or were.
