@@ -3,11 +3,11 @@
 //! Blending n photons alike into one texel errs by up to n 2⁻²⁵ of it: each addition rounds the sum the same way. In
 //! fixed point each photon is rounded once, to its 2⁻³¹, and what follows is exact.
 
-use super::{Job, SUM};
+use super::{GATHER, Job, SUM};
 use crate::{
     gpu::{BufferId, ImageId},
     passes::light::Emission,
-    scene::{LightKind, Scene},
+    scene::Scene,
 };
 
 /// Every Vulkan device binds storage buffers of this size (`maxStorageBufferRange`).
@@ -34,6 +34,9 @@ pub struct Fixed {
 pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
     let bytes = u64::from(side).pow(2) * u64::from(layers) * BYTES;
     let reason = match job.settings.choice(&SUM) {
+        _ if job.settings.choice(&GATHER) == "copy" => {
+            "maps.gather = copy: its splats are drawn, and so blended".to_owned()
+        }
         "blend" => "maps.sum = blend".to_owned(),
         _ if bytes > BOUND => {
             format!("{bytes} bytes of sums are more than a buffer of 128 MiB holds: splats are blended")
@@ -50,28 +53,18 @@ pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
 
 /// The flux that a unit stands for: a power of two, so that scaling by it rounds nothing.
 fn unit(scene: &Scene, emissions: &[Emission], side: u32) -> f64 {
-    let fluxes = emissions.iter().map(|e| most(scene, e, side)).filter(|flux| *flux > 0.0);
+    let fluxes = emissions.iter().map(|e| e.most(scene, side)).filter(|flux| *flux > 0.0);
     let [least, most] = fluxes.fold([f64::INFINITY, 0.0], |[least, most], flux| [least.min(flux), most.max(flux)]);
     let exponent = |flux: f64, bits: i32| (flux.log2().ceil() as i32).saturating_sub(bits);
     let exponent = exponent(least, FINE).max(exponent(most, COARSE)); // of nothing: the least and the most integer
     f64::from(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())).exp2()
 }
 
-/// At most what a photon of a view carries, W: the widest texel's footprint in the light's brightest band and direction.
-fn most(scene: &Scene, emission: &Emission, side: u32) -> f64 {
-    let power = match scene.lights[emission.light].kind {
-        LightKind::Directional { irradiance, .. } => irradiance,
-        LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
-    };
-    let window = (emission.view.high - emission.view.low).abs() / f64::from(side);
-    power.into_iter().fold(0.0, f64::max) * window.x * window.y
-}
-
 impl Fixed {
     /// Adds the photons of one view to the sums.
-    pub fn gather<T: bytemuck::NoUninit>(&self, pass: crate::gpu::PassBuilder<'_>, push: &T, [side, layers]: [u32; 2]) {
+    pub fn gather(&self, pass: crate::gpu::PassBuilder<'_>, [side, layers]: [u32; 2]) {
         let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), layers];
-        pass.push(push).read("maps_unit", self.unit).write("maps_sums", self.sums).dispatch(
+        pass.read("maps_unit", self.unit).write("maps_sums", self.sums).dispatch(
             "maps/gather_fixed.comp",
             groups,
             GROUP * GROUP,
