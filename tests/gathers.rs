@@ -37,10 +37,8 @@ fn difference(a: &Picture, b: &Picture) -> f64 {
 #[test]
 fn a_copy_in_float32_changes_no_bit() {
     let gpu = gpu();
-    // One light, two lights, several photons a sample, and a single photon.
-    for (scene, side) in
-        [("glass-sphere", "97"), ("room", "64"), ("diffuse", "8"), ("gem", "50"), ("glass-sphere", "1")]
-    {
+    // One light; three lights with several photons a sample; a single photon.
+    for (scene, side) in [("glass-sphere", "97"), ("room", "64"), ("glass-sphere", "1")] {
         let [fetched, copied] = ["fetch", "copy"].map(|gather| gathered(&gpu, scene, gather, "32-32", side));
         assert_eq!(fetched.layer("irradiance.caustic"), copied.layer("irradiance.caustic"), "{scene}, {side}² photons");
     }

@@ -36,7 +36,7 @@ fn every_id_that_cannot_run_says_what_is_missing() {
 fn what_is_typed_wrongly_is_said() {
     for (arguments, what) in [
         (&["maps.tabel1"][..], "`maps.table1`"),
-        (&["maps.table1", "--max-seconds", "-1"], "number of seconds"),
+        (&["maps.table1", "--max-seconds=soon"], "number of seconds"),
         (&["maps.table1", "--quick", "--max-seconds", "5"], "cannot be used with"),
         (&["maps.table1", "--device", "no such", "--quick"], "no such"),
     ] {

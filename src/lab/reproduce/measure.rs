@@ -142,9 +142,7 @@ fn prepare(
             Some(too_large)
         } else if ahead > extent.seconds {
             let seconds = extent.seconds;
-            Some(format!(
-                "would take the frames to some {ahead:.0} s of the {seconds:.0} s that --max-seconds leaves them"
-            ))
+            Some(format!("frames would take some {ahead:.0} s in all, and there are {seconds:.0} s (--max-seconds)"))
         } else {
             if watch(&format!("preparing {side}x{side} photons")).is_break() {
                 return Err(LabError::Interrupted);
@@ -197,6 +195,7 @@ fn of_side(
             Err(RenderError::Gpu(GpuError::TooLarge { name, text })) => return Ok(Err(format!("{name}: {text}"))),
             other => other?,
         };
+        renderer.frame(&Frame::default())?; // the first one compiles, where drivers put that off
         let start = Instant::now();
         renderer.frame(&Frame::default())?;
         seconds += start.elapsed().as_secs_f64();
