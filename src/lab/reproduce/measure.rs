@@ -57,10 +57,13 @@ pub struct Run {
     /// In the order of `all`.
     pub timed: Timed,
     /// N that were not run, and why.
-    pub left_out: Vec<(u32, String)>,
+    pub left_out: LeftOut,
     pub reference: String,
     pub warnings: Vec<String>,
 }
+
+/// N that are not run, and why.
+type LeftOut = Vec<(u32, String)>;
 
 struct Ready {
     variant: Variant,
@@ -124,12 +127,7 @@ fn wanted(published: &Published) -> (Vec<u32>, Vec<Variant>) {
 }
 
 /// Renderers for every N that fits, smallest first, and why others do not.
-fn prepare(
-    gpu: &Gpu,
-    published: &Published,
-    extent: &Extent,
-    watch: Watch,
-) -> Result<(Vec<Ready>, Vec<(u32, String)>), LabError> {
+fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> Result<(Vec<Ready>, LeftOut), LabError> {
     let (sides, variants) = wanted(published);
     let scene = Arc::new(Scene::load(SCENE, &[]).expect("a shipped scene loads: a test loads them all"));
     let (mut ready, mut left_out) = (Vec::new(), Vec::new());
