@@ -7,7 +7,7 @@
 use std::ops::ControlFlow;
 
 use nephroid::{
-    gpu::{Gpu, GpuOptions},
+    gpu::{Gpu, GpuOptions, Sources},
     lab::{
         LabError,
         timing::{Rounds, Variant, Verdict},
@@ -81,7 +81,7 @@ fn repeating(gpu: &Gpu, job: &Job) -> Result<Renderer, Failure> {
     let mut twice = planned.plan.passes[at].clone();
     twice.name += ":again";
     planned.plan.passes.insert(at, twice);
-    Ok(Renderer::planned(gpu, job, planned)?)
+    Ok(Renderer::planned(gpu, job, planned, Sources::default())?)
 }
 
 fn variant<'a>(name: &str, renderer: &'a mut Renderer) -> Variant<'a> {

@@ -8,6 +8,7 @@
 // to one over the texels it touches.
 
 #include "maps/photon_splat.glsl"
+#include "maps/photons.glsl"
 
 layout(push_constant, scalar) uniform Push {
     int side;       // texels of the map
@@ -21,8 +22,10 @@ layout(location = 1) flat out vec2 splat_centre; // texels
 void main() {
     int rows = textureSize(photons_hit, 0).y;
     Splat s;
-    bool takes = splat_of(ivec2(gl_VertexIndex, gl_InstanceIndex % rows), gl_InstanceIndex / rows, push.light, push.side,
-                          push.diameter, s);
+    ivec2 texel = ivec2(gl_VertexIndex, gl_InstanceIndex % rows);
+    int layer = gl_InstanceIndex / rows;
+    bool takes =
+        splat_of(hit_at(texel, layer), flux_at(texel, layer), push.light, push.side, push.diameter, s);
     gl_Position = takes ? vec4(2.0 * s.centre / float(push.side) - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0); // culled
     gl_PointSize = takes ? splat_diameter(push.diameter) : 1.0;
     gl_Layer = s.layer;

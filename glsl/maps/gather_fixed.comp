@@ -6,6 +6,7 @@
 
 #include "maps/photon_splat.glsl"
 #include "shared/flux_sums.glsl"
+#include "maps/photons.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -24,7 +25,8 @@ void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, textureSize(photons_hit, 0).xy))) return;
     Splat s;
-    if (!splat_of(texel, int(gl_GlobalInvocationID.z), push.light, push.side, push.diameter, s)) return;
+    int layer = int(gl_GlobalInvocationID.z);
+    if (!splat_of(hit_at(texel, layer), flux_at(texel, layer), push.light, push.side, push.diameter, s)) return;
     float d = splat_diameter(push.diameter);
     ivec2 columns = covered(s.centre.x, d), rows = covered(s.centre.y, d);
     for (int y = rows.x; y < rows.y; y++) {

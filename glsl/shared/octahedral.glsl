@@ -35,4 +35,15 @@ vec3 octahedral_unpack(float packed) {
     return octahedral_decode(vec2(bits / 4096u, bits % 4096u) / 4094.0 * 2.0 - 1.0);
 }
 
+// As above in what a float16 holds exactly, integers up to 2048: 63 steps an axis (2 degrees; the axes exactly).
+float octahedral_pack_half(vec3 v) {
+    ivec2 e = ivec2(round((octahedral_encode(v) * 0.5 + 0.5) * 62.0));
+    return float(e.x * 63 + e.y - 1984);
+}
+
+vec3 octahedral_unpack_half(float packed) {
+    int bits = clamp(int(packed), -1984, 1984) + 1984;
+    return octahedral_decode(vec2(bits / 63, bits % 63) / 62.0 * 2.0 - 1.0);
+}
+
 #endif

@@ -55,11 +55,28 @@ vec4 photon_hit_column(Photon p) {
 // Column `flux`: RGB (W), and the receiver's normal.
 vec4 photon_flux_column(Photon p) {
     if (p.status != PHOTON_VALID) return vec4(0.0);
+#ifdef HALF
+    return vec4(p.flux * HALF, octahedral_pack_half(p.normal));
+#else
     return vec4(p.flux, octahedral_pack(p.normal));
+#endif
+}
+
+// W, from column `flux`. With HALF columns are float16, and flux is in units of which HALF are a watt.
+vec3 photon_flux(vec3 stored) {
+#ifdef HALF
+    return stored / HALF;
+#else
+    return stored;
+#endif
 }
 
 vec3 photon_normal(float packed) {
+#ifdef HALF
+    return octahedral_unpack_half(packed);
+#else
     return octahedral_unpack(packed);
+#endif
 }
 
 #endif

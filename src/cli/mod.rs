@@ -11,6 +11,7 @@ mod list;
 mod output;
 mod progress;
 mod render;
+mod reproduce;
 mod sequence;
 mod signals;
 mod sweep;
@@ -46,6 +47,8 @@ enum Command {
     View(view::ViewArgs),
     /// Judge pictures against a reference over the receiver region, by eight measures and their uncertainty
     Compare(compare::CompareArgs),
+    /// Run a published table here: times and their shape beside the paper's, and the error that it did not print
+    Reproduce(reproduce::ReproduceArgs),
     /// Trace a scene's reference in float64 on the CPU, with its variance
     Truth(truth::TruthArgs),
     /// Say where a method's error comes from: a chain of pictures from the truth to its own, and what each step adds
@@ -80,6 +83,7 @@ impl Cli {
             Command::Render(args) => render::run(&args, started),
             Command::View(args) => view::run(&args),
             Command::Compare(args) => compare::run(&args),
+            Command::Reproduce(args) => reproduce::run(&args),
             Command::Truth(args) => truth::run(&args),
             Command::Budget(args) => budget::run(&args),
             Command::Tracers(args) => tracers::run(&args),

@@ -269,6 +269,14 @@ impl Image {
         unsafe { self.shared.device.create_image_view(&info, None) }.named("vkCreateImageView")
     }
 
+    /// All texels, to be copied to or from a buffer that holds nothing else.
+    pub(super) fn whole(&self) -> vk::BufferImageCopy {
+        let (aspect_mask, layer_count) = (self.format.aspect(), self.layers);
+        let layers = vk::ImageSubresourceLayers { aspect_mask, mip_level: 0, base_array_layer: 0, layer_count };
+        let [width, height] = self.extent;
+        vk::BufferImageCopy::default().image_subresource(layers).image_extent(vk::Extent3D { width, height, depth: 1 })
+    }
+
     /// The whole image.
     pub(super) fn range(&self) -> vk::ImageSubresourceRange {
         vk::ImageSubresourceRange {

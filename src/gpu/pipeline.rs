@@ -32,6 +32,8 @@ pub(super) struct RasterState {
     pub colors: Vec<(vk::Format, Blend)>,
     pub depth: bool,
     pub topology: Topology,
+    /// Vertex attributes by location, each from a binding of its own.
+    pub attributes: Vec<Format>,
 }
 
 /// One compiled stage.
@@ -202,7 +204,10 @@ impl Shared {
         stages: &[vk::PipelineShaderStageCreateInfo<'_>],
         state: &RasterState,
     ) -> Result<vk::Pipeline, GpuError> {
-        let vertex = vk::PipelineVertexInputStateCreateInfo::default();
+        let (streams, attributes) = vertex_input(&state.attributes);
+        let vertex = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&streams)
+            .vertex_attribute_descriptions(&attributes);
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(match state.topology {
             Topology::Points => vk::PrimitiveTopology::POINT_LIST,
             Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
@@ -320,6 +325,19 @@ pub(super) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
         BindingKind::Sampler => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
     }
+}
+
+type Streams = (Vec<vk::VertexInputBindingDescription>, Vec<vk::VertexInputAttributeDescription>);
+
+/// Tightly packed elements, one a vertex: location k from binding k.
+fn vertex_input(formats: &[Format]) -> Streams {
+    let numbered = || (0..).zip(formats);
+    let stream =
+        |(at, f): (u32, &Format)| vk::VertexInputBindingDescription::default().binding(at).stride(f.bytes() as u32);
+    let attribute = |(at, f): (u32, &Format)| {
+        vk::VertexInputAttributeDescription::default().location(at).binding(at).format(f.vk())
+    };
+    (numbered().map(stream).collect(), numbered().map(attribute).collect())
 }
 
 fn blend_state(blend: Blend) -> vk::PipelineColorBlendAttachmentState {

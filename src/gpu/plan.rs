@@ -135,7 +135,7 @@ pub enum Topology {
     Triangles,
 }
 
-/// One draw: no vertex buffers, shaders pull what they need.
+/// One draw. Shaders pull what they need, but for what a pass gives as vertex attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Draw {
     /// Vertices.
@@ -159,6 +159,11 @@ pub enum Work {
         groups: [u32; 3],
         /// Invocations a work group.
         local: u32,
+    },
+    /// Copies of whole images to buffers, layer by layer, texel by texel: nothing is converted.
+    Copy {
+        /// From, to.
+        copies: Vec<(ImageId, BufferId)>,
     },
     /// Draws into targets.
     Raster {
@@ -186,6 +191,8 @@ pub struct PassDecl {
     pub work: Work,
     /// Resources by shader name.
     pub bindings: Vec<Binding>,
+    /// Buffers whose elements are vertex attributes, by location, and the format of an element.
+    pub attributes: Vec<(BufferId, Format)>,
     /// Push constants.
     pub push: Vec<u8>,
     /// Preprocessor definitions.
@@ -252,6 +259,7 @@ impl Plan {
                 phase: Phase::Frame,
                 work: Work::Compute { shader: String::new(), groups: [0; 3], local: 64 },
                 bindings: Vec::new(),
+                attributes: Vec::new(),
                 push: Vec::new(),
                 defines: Vec::new(),
                 provided: Vec::new(),
@@ -365,6 +373,12 @@ impl PassBuilder<'_> {
         self
     }
 
+    /// A buffer of one element a vertex: the attribute of the next location, from 0 on.
+    pub fn attribute(mut self, buffer: BufferId, format: Format) -> Self {
+        self.pass.attributes.push((buffer, format));
+        self
+    }
+
     /// Push constants.
     pub fn push<T: bytemuck::NoUninit>(mut self, value: &T) -> Self {
         self.pass.push = bytemuck::bytes_of(value).to_vec();
@@ -393,6 +407,12 @@ impl PassBuilder<'_> {
             };
         }
         self.pass.work = Work::Compute { shader: shader.to_owned(), groups, local };
+        self.plan.passes.push(self.pass);
+    }
+
+    /// Ends the sentence with copies of whole images to buffers of as many bytes.
+    pub fn copy(mut self, copies: Vec<(ImageId, BufferId)>) {
+        self.pass.work = Work::Copy { copies };
         self.plan.passes.push(self.pass);
     }
 

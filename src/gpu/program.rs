@@ -37,7 +37,8 @@ pub struct Program {
     pub(super) plan: Plan,
     pub(super) buffers: Vec<Rc<Buffer>>,
     pub(super) images: Vec<Rc<Image>>,
-    pub(super) pipelines: Vec<Arc<Pipeline>>,
+    /// Of each pass, but for copies.
+    pub(super) pipelines: Vec<Option<Arc<Pipeline>>>,
     pub(super) staging: Staging,
     phases: Vec<(Phase, Vec<usize>, Timer)>,
     commands: vk::CommandBuffer,
@@ -185,6 +186,7 @@ impl Program {
                         counters.invocations =
                             Some(groups.iter().map(|&g| u64::from(g)).product::<u64>() * u64::from(*local));
                     }
+                    Work::Copy { .. } => {}
                     Work::Raster { topology, .. } => {
                         let (fragments, vertices) = timer.counted(slot)?;
                         counters.fragments = fragments;
@@ -244,14 +246,7 @@ impl Program {
         let bytes = self.plan.images[id.0].bytes();
         let staging = Buffer::create(&self.shared, "read-back", bytes, MemoryLocation::GpuToCpu)?;
         let before = image.history.borrow_mut().advance(Access::CopyRead, true);
-        let region = [vk::BufferImageCopy::default()
-            .image_subresource(vk::ImageSubresourceLayers {
-                aspect_mask: image.range().aspect_mask,
-                mip_level: 0,
-                base_array_layer: 0,
-                layer_count: image.layers,
-            })
-            .image_extent(vk::Extent3D { width: image.extent[0], height: image.extent[1], depth: 1 })];
+        let region = [image.whole()];
         self.shared.run_once(|commands| {
             self.barriers(commands, Vec::new(), before.iter().map(|b| image_barrier(b, image)).collect());
             // SAFETY: the buffer holds the whole image; both live until the queue is idle.
@@ -348,12 +343,15 @@ fn prepare_pass(
     pass: &PassDecl,
     sources: &Sources,
     store: &Store,
-) -> Result<Arc<Pipeline>, GpuError> {
+) -> Result<Option<Arc<Pipeline>>, GpuError> {
     let (files, raster) = match &pass.work {
+        Work::Copy { .. } => return Ok(None),
         Work::Compute { shader, .. } => (std::slice::from_ref(shader), None),
         Work::Raster { shaders, targets, depth, topology, .. } => {
             let colors = targets.iter().map(|t| (plan.images[t.image.0].format.vk(), t.blend)).collect();
-            (shaders.as_slice(), Some(RasterState { colors, depth: depth.is_some(), topology: *topology }))
+            let attributes = pass.attributes.iter().map(|&(_, format)| format).collect();
+            let state = RasterState { colors, depth: depth.is_some(), topology: *topology, attributes };
+            (shaders.as_slice(), Some(state))
         }
     };
     let stages = files
@@ -365,5 +363,5 @@ fn prepare_pass(
         .collect::<Result<Vec<_>, GpuError>>()?;
     let pipeline = shared.pipeline(pass, &stages, raster.as_ref())?;
     pipeline.check(pass)?;
-    Ok(pipeline)
+    Ok(Some(pipeline))
 }

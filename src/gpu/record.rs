@@ -8,7 +8,7 @@ use super::{
     device::Shared,
     memory::{Buffer, Image},
     pipeline::{Pipeline, descriptor_type},
-    plan::{BufferId, Draw, PassDecl, Resource, Target, Work},
+    plan::{BufferId, Draw, ImageId, PassDecl, Resource, Target, Work},
     program::Program,
     reflect::BindingKind,
     timer::Timer,
@@ -94,7 +94,7 @@ pub(super) unsafe fn updates(program: &Program, updates: &[(BufferId, &[u8])]) {
 /// # Safety
 /// The program's command buffer is recording, and the pass's resources are alive.
 pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &Timer, counting: bool) {
-    let (pass, pipeline, commands) = (&program.plan.passes[index], &*program.pipelines[index], program.commands());
+    let (pass, pipeline, commands) = (&program.plan.passes[index], &program.pipelines[index], program.commands());
     let device = &program.shared.device;
     let counts = counting && matches!(pass.work, Work::Raster { .. });
     // SAFETY: recording is promised by the caller; queries begin and end outside rendering.
@@ -107,10 +107,13 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
         if counts {
             timer.begin_counting(commands, slot);
         }
-        device.cmd_bind_pipeline(commands, pipeline.point, pipeline.handle);
-        bind(program, pass, pipeline);
+        if let Some(pipeline) = pipeline {
+            device.cmd_bind_pipeline(commands, pipeline.point, pipeline.handle);
+            bind(program, pass, pipeline);
+        }
         match &pass.work {
             Work::Compute { groups, .. } => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+            Work::Copy { copies } => copies.iter().for_each(|&copied| copy(program, copied)),
             Work::Raster { targets, draws, .. } => draw(program, pass, targets, draws),
         }
         if counts {
@@ -158,14 +161,21 @@ fn resource_barriers(program: &Program, pass: &PassDecl) {
         let image = &program.images[at];
         images.extend(image.history.borrow_mut().advance(access, true).map(|b| image_barrier(&b, image)));
     };
+    let mut buffer = |at: usize, access| {
+        let buffer = &program.buffers[at];
+        buffers.extend(buffer.history.borrow_mut().advance(access, false).map(|b| buffer_barrier(&b, buffer)));
+    };
     for binding in &pass.bindings {
         match binding.resource {
             Resource::Image(i) => image(i.0, binding.access),
-            Resource::Buffer(i) => {
-                let buffer = &program.buffers[i.0];
-                let before = buffer.history.borrow_mut().advance(binding.access, false);
-                buffers.extend(before.map(|b| buffer_barrier(&b, buffer)));
-            }
+            Resource::Buffer(i) => buffer(i.0, binding.access),
+        }
+    }
+    pass.attributes.iter().for_each(|(b, _)| buffer(b.0, Access::VertexAttributes));
+    if let Work::Copy { copies } = &pass.work {
+        for (from, to) in copies {
+            image(from.0, Access::CopyRead);
+            buffer(to.0, Access::CopyWrite);
         }
     }
     if let Work::Raster { targets, depth, .. } = &pass.work {
@@ -221,6 +231,20 @@ unsafe fn bind(program: &Program, pass: &PassDecl, pipeline: &Pipeline) {
     }
 }
 
+/// Copies a whole image to a buffer.
+///
+/// # Safety
+/// The command buffer is recording, outside rendering; barriers came before.
+unsafe fn copy(program: &Program, (from, to): (ImageId, BufferId)) {
+    let (image, buffer) = (&program.images[from.0], &program.buffers[to.0]);
+    let region = [image.whole()];
+    let layout = Access::CopyRead.scope().layout;
+    // SAFETY: the plan declares the buffer as large as the image; the rest is promised by the caller.
+    unsafe {
+        program.shared.device.cmd_copy_image_to_buffer(program.commands(), image.handle, layout, buffer.handle, &region)
+    }
+}
+
 /// # Safety
 /// The command buffer is recording, outside rendering, with the pass's pipeline bound.
 unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[Draw]) {
@@ -262,6 +286,9 @@ unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[
         device.cmd_begin_rendering(commands, &info);
         device.cmd_set_viewport(commands, 0, &[viewport]);
         device.cmd_set_scissor(commands, 0, &[area]);
+        for (at, (buffer, _)) in (0..).zip(&pass.attributes) {
+            device.cmd_bind_vertex_buffers(commands, at, &[program.buffers[buffer.0].handle], &[0]);
+        }
         for d in draws {
             device.cmd_draw(commands, d.vertices, d.instances, d.first_vertex, d.first_instance);
         }

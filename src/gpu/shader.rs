@@ -148,6 +148,7 @@ impl Sources {
         let keys = plan.passes.iter().flat_map(|pass| {
             let files = match &pass.work {
                 Work::Compute { shader, .. } => std::slice::from_ref(shader),
+                Work::Copy { .. } => &[],
                 Work::Raster { shaders, .. } => shaders.as_slice(),
             };
             files.iter().map(|file| self.key(file, &pass.defines, &pass.provided).to_string())

@@ -96,6 +96,10 @@ impl PassRow {
             Work::Compute { shader, groups, local } => {
                 ("compute", std::slice::from_ref(shader), *groups, *local, [].as_slice())
             }
+            Work::Copy { copies } => {
+                let [width, height] = copies.first().map_or([0, 0], |(from, _)| plan.image_extent(*from));
+                ("copy", [].as_slice(), [width, height, 1], 0, [].as_slice())
+            }
             Work::Raster { shaders, targets, depth, draws, .. } => {
                 let target = targets.first().map(|t| t.image).or(depth.as_ref().map(|d| d.image));
                 let [width, height] = target.map_or([0, 0], |t| plan.image_extent(t));
@@ -119,6 +123,7 @@ impl PassRow {
         let [x, y, z] = self.extent;
         match (self.kind, self.draws) {
             ("compute", _) => format!("{x}x{y}x{z} groups of {}", self.local),
+            ("copy", _) => format!("{x}x{y} to buffers"),
             (_, 1) => format!("{x}x{y}, 1 draw of {} vertices", self.vertices),
             (_, n) => format!("{x}x{y}, {n} draws of {} vertices", self.vertices),
         }

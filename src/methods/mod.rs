@@ -120,6 +120,10 @@ pub trait Method: Sync {
     fn settings(&self) -> &'static [Setting];
     /// The photon columns it reads.
     fn columns(&self) -> &'static [Column];
+    /// Whether it wants them all in float16.
+    fn halves(&self, _: &Settings) -> bool {
+        false
+    }
     /// Its stages, which `plan` lists as left out where no photon can come.
     fn stages(&self) -> &'static [&'static str];
     /// Where its error comes from: the pictures of `nephroid budget`, from the truth of all paths to the picture as it

@@ -17,6 +17,7 @@ impl Plan {
         });
         let drawn = match &pass.work {
             Work::Compute { .. } => 0,
+            Work::Copy { copies } => copies.iter().map(|(_, to)| self.buffers[to.0].bytes).sum(),
             Work::Raster { targets, .. } => targets.iter().map(|t| self.images[t.image.0].bytes()).sum(),
         };
         stored.sum::<u64>() + drawn

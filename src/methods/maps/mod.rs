@@ -1,17 +1,19 @@
 #![doc = include_str!("README.md")]
 //! Based on: C. Wyman, *Hierarchical Caustic Maps*, I3D 2008. Differs: exact tracer, own receiving view, weights that
-//! sum to one. Not implemented: its gathers `copy`, `hierarchical`, `combine` and `varying`.
+//! sum to one. Not implemented: its gathers `hierarchical`, `combine` and `varying`.
 
+mod copied;
 mod sums;
 mod views;
 
+use copied::{COPY, Vertices};
 use sums::Fixed;
 
 use super::{Job, Link, Method, Planned, Provided, Shown, Slot};
 use crate::{
     gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, Resource, Topology},
     passes::{PlanError, eye::SurfaceProvider, light::Column},
-    settings::{Choice, Setting, Whole},
+    settings::{Choice, Setting, Settings, Whole},
 };
 
 /// Texels along each side of the caustic map.
@@ -34,8 +36,8 @@ static SPLAT_SIZE: Whole = Whole {
 static GATHER: Choice = Choice {
     key: "maps.gather",
     default: "fetch",
-    words: &["fetch"],
-    doc: "fetch: each photon is fetched from where it was traced, without a copy (section 4)",
+    words: &["fetch", "copy"],
+    doc: "fetch: each photon is fetched from where it was traced (section 4); copy: photons are first copied to vertices (2006)",
 };
 
 static RECEIVERS: Choice = Choice {
@@ -49,13 +51,14 @@ static SUM: Choice = Choice {
     key: "maps.sum",
     default: "fixed",
     words: &["fixed", "blend"],
-    doc: "fixed: exact, in 64-bit fixed point (beyond 128 MiB of sums, blend); blend: an instanced draw, blended in float32",
+    doc: "fixed: exact, in 64-bit fixed point (beyond 128 MiB of sums, blend); blend: drawn and blended in float32, as with maps.gather = copy always",
 };
 
 static SETTINGS: &[Setting] = &[
     Setting::Whole(&SIDE),
     Setting::Whole(&SPLAT_SIZE),
     Setting::Choice(&GATHER),
+    Setting::Choice(&COPY),
     Setting::Choice(&SUM),
     Setting::Choice(&RECEIVERS),
 ];
@@ -71,7 +74,15 @@ static CHAIN: &[Link] = &[
     Link {
         shown: Shown::Fine,
         step: "reconstruction",
-        moved_by: &["maps.side", "maps.splat_size", "maps.gather", "maps.sum", "maps.receivers", "eye.samples"],
+        moved_by: &[
+            "maps.side",
+            "maps.splat_size",
+            "maps.gather",
+            "maps.copy",
+            "maps.sum",
+            "maps.receivers",
+            "eye.samples",
+        ],
     },
     Link { shown: Shown::AsAsked, step: "light.side", moved_by: &["light.side"] },
 ];
@@ -108,6 +119,10 @@ impl Method for Maps {
         &[Column::Hit, Column::Flux]
     }
 
+    fn halves(&self, settings: &Settings) -> bool {
+        copied::halves(settings)
+    }
+
     fn stages(&self) -> &'static [&'static str] {
         &["maps/gather", "maps/resolve"]
     }
@@ -127,6 +142,7 @@ impl Method for Maps {
             map: job.plan.image_array("maps/map", [side, side], layers, Format::Rgba32f, Lifetime::Frame),
             views: job.plan.upload("maps/views", &views),
             fixed: sums::fixed(job, side, layers),
+            vertices: Vertices::plan(job),
             drawn: false,
         }))
     }
@@ -138,10 +154,11 @@ struct PlannedMaps {
     map: ImageId,
     views: BufferId,
     fixed: Option<Fixed>,
+    vertices: Option<Vertices>,
     drawn: bool,
 }
 
-/// Push constants of `glsl/maps/gather_fixed.comp`, `gather_fetch.vert` and `splat.frag`.
+/// Push constants of `glsl/maps/gather_fixed.comp`, `gather_fetch.vert`, `gather_copy.vert` and `splat.frag`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct GatherPush {
@@ -165,20 +182,31 @@ impl Planned for PlannedMaps {
         let n = job.photons.side;
         let light = job.emissions[view].light as u32;
         let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, light };
-        let pass = job.photons.define(job.plan.pass(&name_of("maps/gather")));
-        let pass = pass.with(job.photons.fetch(&[Column::Hit, Column::Flux])).with([self.views()]);
+        if let Some(vertices) = &self.vertices {
+            vertices.fill(job, &name_of("maps/copy"));
+        }
+        let pass = job.photons.define(job.plan.pass(&name_of("maps/gather"))).with([self.views()]).push(&push);
+        let columns = job.photons.fetch(&[Column::Hit, Column::Flux]);
         if let Some(fixed) = &self.fixed {
-            fixed.gather(pass, &push, [n, job.photons.layers()]);
+            fixed.gather(pass.with(columns), [n, job.photons.layers()]);
             if view + 1 == job.emissions.len() {
                 fixed.resolve(job, self.map, self.side);
             }
             return;
         }
         let first = !std::mem::replace(&mut self.drawn, true);
-        pass.push(&push).target_layers(self.map, first.then_some([0.0; 4]), Blend::Add).draw(
-            &["maps/gather_fetch.vert", "maps/splat.frag"],
+        let pass = pass.target_layers(self.map, first.then_some([0.0; 4]), Blend::Add);
+        let (pass, shader, [vertices, instances]) = match &self.vertices {
+            None => (pass.with(columns), "maps/gather_fetch.vert", [n, n * job.photons.layers()]),
+            Some(copied) => {
+                let pass = copied.attributes().into_iter().fold(pass, |pass, (b, format)| pass.attribute(b, format));
+                (pass, "maps/gather_copy.vert", [(n * n).saturating_mul(job.photons.layers()), 1])
+            }
+        };
+        pass.draw(
+            &[shader, "maps/splat.frag"],
             Topology::Points,
-            vec![Draw { vertices: n, first_vertex: 0, instances: n * job.photons.layers(), first_instance: 0 }],
+            vec![Draw { vertices, first_vertex: 0, instances, first_instance: 0 }],
         );
     }
 

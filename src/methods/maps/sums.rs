@@ -3,7 +3,7 @@
 //! Blending n photons alike into one texel errs by up to n 2⁻²⁵ of it: each addition rounds the sum the same way. In
 //! fixed point each photon is rounded once, to its 2⁻³¹, and what follows is exact.
 
-use super::{Job, SUM};
+use super::{GATHER, Job, SUM};
 use crate::{
     gpu::{BufferId, ImageId},
     passes::light,
@@ -27,6 +27,9 @@ pub struct Fixed {
 pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
     let bytes = u64::from(side).pow(2) * u64::from(layers) * BYTES;
     let reason = match job.settings.choice(&SUM) {
+        _ if job.settings.choice(&GATHER) == "copy" => {
+            "maps.gather = copy: its splats are drawn, and so blended".to_owned()
+        }
         "blend" => "maps.sum = blend".to_owned(),
         _ if bytes > BOUND => {
             format!("{bytes} bytes of sums are more than a buffer of 128 MiB holds: splats are blended")
@@ -43,9 +46,9 @@ pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
 
 impl Fixed {
     /// Adds the photons of one view to the sums.
-    pub fn gather<T: bytemuck::NoUninit>(&self, pass: crate::gpu::PassBuilder<'_>, push: &T, [side, layers]: [u32; 2]) {
+    pub fn gather(&self, pass: crate::gpu::PassBuilder<'_>, [side, layers]: [u32; 2]) {
         let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), layers];
-        pass.push(push).read("flux_unit", self.unit).write("flux_sums", self.sums).dispatch(
+        pass.read("flux_unit", self.unit).write("flux_sums", self.sums).dispatch(
             "maps/gather_fixed.comp",
             groups,
             GROUP * GROUP,

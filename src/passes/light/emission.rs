@@ -21,6 +21,19 @@ pub struct Emission {
     pub band: Option<usize>,
 }
 
+impl Emission {
+    /// At most what a photon of the view carries, W, of `side` a side: the widest texel's footprint in the light's
+    /// brightest band and direction.
+    pub fn most(&self, scene: &Scene, side: u32) -> f64 {
+        let power = match scene.lights[self.light].kind {
+            LightKind::Directional { irradiance, .. } => irradiance,
+            LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
+        };
+        let window = (self.view.high - self.view.low).abs() / f64::from(side);
+        power.into_iter().fold(0.0, f64::max) * window.x * window.y
+    }
+}
+
 /// The emission views of every light: none where nothing is specular or a light has no power. Where the scene moves, a
 /// light that reaches nothing now keeps its views, which then see nothing: it may reach something at another time.
 pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Result<Vec<Emission>, PlanError> {

@@ -35,9 +35,10 @@ impl Column {
         }
     }
 
-    /// Positions and flux in float32; a direction loses nothing that matters in float16.
-    pub fn format(self) -> Format {
+    /// Positions and flux in float32, unless all are asked for in float16; a direction loses nothing that matters there.
+    pub fn format(self, half: bool) -> Format {
         match self {
+            _ if half => Format::Rgba16f,
             Self::Direction => Format::Rgba16f,
             _ => Format::Rgba32f,
         }
@@ -51,6 +52,8 @@ pub struct Photons {
     pub side: u32,
     /// Layers, where each sample can leave several photons: shaders then see arrays, and LAYERS.
     layers: Option<u32>,
+    /// Where columns are float16: units a watt of the flux, a power of two.
+    half: Option<f64>,
     columns: Vec<(Column, ImageId)>,
 }
 
@@ -72,32 +75,50 @@ impl Photons {
         self.layers.unwrap_or(1)
     }
 
-    /// Tells a shader of the layers.
+    /// The image of a column, which some method declared.
+    pub fn column(&self, wanted: Column) -> Option<ImageId> {
+        self.columns.iter().find(|(c, _)| *c == wanted).map(|(_, image)| *image)
+    }
+
+    /// Tells a shader of the layers, and of float16.
     pub fn define<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let pass = self.half.into_iter().fold(pass, |pass, units| pass.define("HALF", format!("{units:e}")));
         self.layers.into_iter().fold(pass, |pass, layers| pass.define("LAYERS", layers))
     }
 
     /// Bytes a photon.
     pub fn bytes_each(&self) -> u64 {
-        self.columns.iter().map(|(c, _)| c.format().bytes()).sum()
+        self.columns.iter().map(|(c, _)| c.format(self.half.is_some()).bytes()).sum()
     }
 }
 
 /// Adds the photon columns that `columns` names, once for all views; with layers where the class has several paths.
-pub fn photon_buffer(plan: &mut Plan, settings: &Settings, class: PathClass, columns: &[Column]) -> Photons {
+///
+/// `half`: all of them in float16, and the most flux of a photon (W). Positions are then rounded as float16 rounds; flux
+/// is scaled by a power of two, or a photon's microwatts would be lost below what float16 holds.
+pub fn photon_buffer(
+    plan: &mut Plan,
+    settings: &Settings,
+    class: PathClass,
+    columns: &[Column],
+    half: Option<f64>,
+) -> Photons {
+    /// Below 65504 by enough that nothing overflows; 2⁻¹⁴ is the least that keeps all bits.
+    const BRIGHTEST: f64 = 14.0;
+    let half = half.map(|most| if most > 0.0 { (BRIGHTEST - most.log2().ceil()).exp2() } else { 1.0 });
     let side = settings.whole(&SIDE);
     let layers = matches!(class, PathClass::All(_)).then(|| settings.whole(&LAYERS));
     let image = |plan: &mut Plan, c: Column| {
         let (name, extent) = (format!("light/photons.{}", c.name()), [side, side]);
         match layers {
-            Some(layers) => plan.image_array(&name, extent, layers, c.format(), Lifetime::Frame),
-            None => plan.image(&name, extent, c.format(), Lifetime::Frame),
+            Some(layers) => plan.image_array(&name, extent, layers, c.format(half.is_some()), Lifetime::Frame),
+            None => plan.image(&name, extent, c.format(half.is_some()), Lifetime::Frame),
         }
     };
     let mut wanted = columns.to_vec();
     wanted.sort();
     wanted.dedup();
-    Photons { side, layers, columns: wanted.into_iter().map(|c| (c, image(plan, c))).collect() }
+    Photons { side, layers, half, columns: wanted.into_iter().map(|c| (c, image(plan, c))).collect() }
 }
 
 /// Push constants of `glsl/light/sample.glsl`.
@@ -163,7 +184,7 @@ pub fn photons(plan: &mut Plan, name: &str, tracing: &Tracing<'_>) {
     for &(column, image) in &tracing.photons.columns {
         let binding = format!("photons_{}", column.name());
         let define = format!("COLUMN_{}", column.name().to_uppercase());
-        pass = pass.store(&binding, image).define(&define, column.format().glsl());
+        pass = pass.store(&binding, image).define(&define, column.format(tracing.photons.half.is_some()).glsl());
     }
     tracing.dispatch(pass, "light/photons.comp");
 }

@@ -1,0 +1,23 @@
+// The photon image's columns, fetched.
+#ifndef PHOTONS_GLSL
+#define PHOTONS_GLSL
+
+#ifdef LAYERS
+layout(set = 0, binding = 8) uniform sampler2DArray photons_hit;
+layout(set = 0, binding = 9) uniform sampler2DArray photons_flux;
+#define PHOTON_PLACE(texel, layer) ivec3(texel, layer)
+#else
+layout(set = 0, binding = 8) uniform sampler2D photons_hit;
+layout(set = 0, binding = 9) uniform sampler2D photons_flux;
+#define PHOTON_PLACE(texel, layer) texel
+#endif
+
+vec4 hit_at(ivec2 texel, int layer) {
+    return texelFetch(photons_hit, PHOTON_PLACE(texel, layer), 0);
+}
+
+vec4 flux_at(ivec2 texel, int layer) {
+    return texelFetch(photons_flux, PHOTON_PLACE(texel, layer), 0);
+}
+
+#endif

@@ -1,0 +1,74 @@
+//! `nephroid reproduce`: a published table beside a run of it here.
+
+use std::{ops::ControlFlow, path::PathBuf, sync::atomic::Ordering::Relaxed};
+
+use clap::Args;
+
+use super::{
+    Failure,
+    args::{ListArgs, parse_seconds},
+    output::{print, say},
+    signals,
+};
+use crate::{
+    gpu::{DeviceChoice, Gpu, GpuOptions},
+    lab::{self, CatalogueReport, Extent, Report, ReproduceReport, papers},
+    store::Store,
+    whole::OutFolder,
+};
+
+/// What lists the ids in the place of one.
+const LIST: &str = "list";
+/// s
+const MAX_SECONDS: f64 = 600.0;
+
+#[derive(Args)]
+pub struct ReproduceArgs {
+    /// A table or figure, such as maps.table2; `list` for all, and what of each runs here
+    #[arg(value_name = "ID")]
+    id: String,
+    /// Small N, few frames: a minute at most on a software device
+    #[arg(long)]
+    quick: bool,
+    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
+    #[arg(long, value_name = "D")]
+    device: Option<String>,
+    /// The most time for frames and truth; N that would take longer are left out, and said [default: 600]
+    #[arg(long, value_name = "S", value_parser = parse_seconds, conflicts_with = "quick")]
+    max_seconds: Option<f64>,
+    #[command(flatten)]
+    list: ListArgs,
+    /// Folder for `ID.json` and a picture of each variant and N; made where it is missing
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub fn run(args: &ReproduceArgs) -> Result<(), Failure> {
+    if args.id == LIST {
+        return print(&CatalogueReport::default().write(args.list.format)?);
+    }
+    let published = papers::find(&args.id)?;
+    let seconds = args.max_seconds.unwrap_or(MAX_SECONDS);
+    let extent = if args.quick { Extent::quick() } else { Extent::whole(seconds) };
+    let stop = signals::stop_flag()?;
+    let folder = args.out.as_deref().map(OutFolder::stage).transpose()?;
+    let report = if lab::can_run(&published) {
+        let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
+        let gpu = Gpu::new(&GpuOptions { device, validation: false, capture: false })?;
+        lab::reproduce(&gpu, &Store::open(), &published, &extent, &mut |what| {
+            if !what.is_empty() {
+                say(what);
+            }
+            if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?
+    } else {
+        say(&format!("nothing of {} can be run yet: its published figures, and what is missing", published.id));
+        ReproduceReport::unrun(&published, &extent)
+    };
+    if let (Some(mut folder), Some(place)) = (folder, &args.out) {
+        report.write_files(&mut folder)?;
+        folder.commit()?;
+        say(&format!("written: {}", place.display()));
+    }
+    print(&report.write(args.list.format)?)
+}

@@ -1,0 +1,216 @@
+//! The runs: one renderer a variant and N, as many as time and memory allow, timed in rounds, then judged.
+
+use std::{ops::ControlFlow, sync::Arc, time::Instant};
+
+use super::{
+    Extent, Watch,
+    columns::{self, SCENE, Variant},
+};
+use crate::{
+    gpu::{Gpu, GpuError, Sources},
+    image::Layers,
+    lab::{
+        Auto, LabError, Picture, Provenance,
+        compare::judged_figure,
+        exposure,
+        papers::{Label, Published},
+        timing::{self, Rounds, Timed},
+    },
+    methods,
+    metrics::Measure,
+    renderer::{self, Frame, Job, Providers, RenderError, Renderer},
+    scene::Scene,
+    store::Store,
+};
+
+/// The layer that is judged.
+const LAYER: &str = "irradiance.caustic";
+/// Frames before timing begins, at most.
+const MOST_WARMUP: u32 = 8;
+/// Photons and vertices grow as N².
+const GROWTH: f64 = 4.0;
+/// Of the device's memory that all renderers together may take.
+const MEMORY: f64 = 0.5;
+const SEED: u64 = 1;
+/// Place of the photons that arrived in an account.
+const VALID: usize = 1;
+
+/// One variant at one N, timed and judged.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    pub variant: Variant,
+    pub side: u32,
+    pub stages: Vec<String>,
+    /// Photons that arrived, of those emitted, and their share of the flux.
+    pub valid: [f64; 2],
+    /// Of the picture; none before it was judged.
+    pub relmse: Option<Measure>,
+    pub layers: Layers,
+    /// For its PNG, EV.
+    pub exposure_ev: f64,
+    pub provenance: Provenance,
+}
+
+/// Everything that was run.
+pub struct Run {
+    pub all: Vec<Measured>,
+    /// In the order of `all`.
+    pub timed: Timed,
+    /// N that were not run, and why.
+    pub left_out: LeftOut,
+    pub reference: String,
+    pub warnings: Vec<String>,
+}
+
+/// N that are not run, and why.
+type LeftOut = Vec<(u32, String)>;
+
+struct Ready {
+    variant: Variant,
+    side: u32,
+    job: Job,
+    renderer: Renderer,
+}
+
+pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, watch: Watch) -> Result<Run, LabError> {
+    let (mut ready, left_out) = prepare(gpu, published, extent, watch)?;
+    let frames = (ready.len() as u32) * extent.rounds;
+    let say = format!("timing {} variants, {frames} frames, on {}", ready.len(), gpu.info().label());
+    let timed = time(&mut ready, extent.rounds, &mut |first| watch(if first { &say } else { "" }))?;
+    let warnings = timed.warnings(f64::from(gpu.info().timestamp_period) * 1e-6);
+    let all = ready.into_iter().map(|ready| read(gpu, ready)).collect::<Result<Vec<_>, _>>()?;
+    let (pictures, mut all): (Vec<Picture>, Vec<Measured>) = all.into_iter().unzip();
+    let mut begun = false;
+    let references = Auto { layer: LAYER, seconds: extent.truth_seconds, store }.references(&pictures, &mut |_| {
+        let first = !std::mem::replace(&mut begun, true);
+        watch(if first { "making the truth that the pictures are judged by" } else { "" })
+    })?;
+    for ((measured, picture), truth) in all.iter_mut().zip(&pictures).zip(&references) {
+        measured.relmse = Some(judged_figure(picture, truth, LAYER)?);
+    }
+    let reference = references.first().map(|truth| truth.file.clone()).unwrap_or_default();
+    Ok(Run { all, timed, left_out, reference, warnings })
+}
+
+/// The account and the picture of the frame that was timed.
+fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
+    let Ready { variant, side, job, mut renderer } = ready;
+    let account = renderer.account()?;
+    let layers = renderer.layers()?;
+    let provenance = Provenance::new(&job, &Frame::default(), gpu.info(), Vec::new());
+    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+    let photons = share(account.counts[VALID] as f64, account.emitted() as f64);
+    let valid = [photons, share(account.valid_w(), account.emitted_w())];
+    let exposure_ev = exposure(&job.settings, &job.scene);
+    let picture = Picture { file: variant.name(), layers: layers.clone(), about: provenance.attributes() };
+    Ok((
+        picture,
+        Measured { variant, side, stages: renderer.stages(), valid, relmse: None, layers, exposure_ev, provenance },
+    ))
+}
+
+/// The N of the table, and the variants that its columns take.
+fn wanted(published: &Published) -> (Vec<u32>, Vec<Variant>) {
+    let (mut sides, mut variants) = (Vec::new(), Vec::new());
+    for figure in &published.figures {
+        if let (Label::Number(side), Ok((variant, _))) = (&figure.row, columns::runs(published, &figure.column)) {
+            if !sides.contains(side) {
+                sides.push(*side);
+            }
+            if !variants.contains(&variant) {
+                variants.push(variant);
+            }
+        }
+    }
+    sides.sort_unstable();
+    (sides, variants)
+}
+
+/// Renderers for every N that fits, smallest first, and why others do not.
+fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> Result<(Vec<Ready>, LeftOut), LabError> {
+    let (sides, variants) = wanted(published);
+    let scene = Arc::new(Scene::load(SCENE, &[]).expect("a shipped scene loads: a test loads them all"));
+    let (mut ready, mut left_out) = (Vec::new(), Vec::new());
+    let (mut spent, mut last, mut bytes) = (0.0, 0.0, 0);
+    for side in sides {
+        let frames = f64::from(extent.rounds + MOST_WARMUP);
+        let ahead = spent + frames * GROWTH * last;
+        let too_large = format!("--quick takes N up to {}", extent.most_side);
+        let why = if side > extent.most_side {
+            Some(too_large)
+        } else if ahead > extent.seconds {
+            let seconds = extent.seconds;
+            Some(format!("frames would take some {ahead:.0} s in all, and there are {seconds:.0} s (--max-seconds)"))
+        } else {
+            if watch(&format!("preparing {side}x{side} photons")).is_break() {
+                return Err(LabError::Interrupted);
+            }
+            match of_side(gpu, &scene, (side, &variants), extent, bytes)? {
+                Ok((made, taken, frame_s)) => {
+                    ready.extend(made);
+                    (bytes, last) = (taken, frame_s);
+                    spent += frames * frame_s;
+                    None
+                }
+                Err(why) => Some(why),
+            }
+        };
+        left_out.extend(why.map(|why| (side, why)));
+    }
+    Ok((ready, left_out))
+}
+
+/// Renderers of one N, the bytes that all take then, and what one frame of each takes in all, s; or why it does not fit.
+type OfSide = Result<(Vec<Ready>, u64, f64), String>;
+
+fn of_side(
+    gpu: &Gpu,
+    scene: &Arc<Scene>,
+    (side, variants): (u32, &[Variant]),
+    extent: &Extent,
+    mut bytes: u64,
+) -> Result<OfSide, LabError> {
+    let maps = methods::find("maps").map_err(RenderError::from)?;
+    let (mut made, mut seconds) = (Vec::new(), 0.0);
+    for &variant in variants {
+        let settings = variant.settings(side).expect("the settings of a variant are shipped ones: a test runs them");
+        let job = Job {
+            scene: scene.clone(),
+            providers: Providers::of(maps),
+            settings,
+            camera: "region".to_owned(),
+            size: extent.size,
+        };
+        let planned = renderer::plan(&job)?;
+        bytes += planned.plan.bytes();
+        let memory = (MEMORY * gpu.info().memory_bytes as f64) as u64;
+        if bytes > memory {
+            return Ok(Err(format!(
+                "takes {bytes} bytes with the smaller N, and {memory} are at most taken of the device"
+            )));
+        }
+        let mut renderer = match Renderer::planned(gpu, &job, planned, Sources::default()) {
+            Err(RenderError::Gpu(GpuError::TooLarge { name, text })) => return Ok(Err(format!("{name}: {text}"))),
+            other => other?,
+        };
+        renderer.frame(&Frame::default())?; // the first one compiles, where drivers put that off
+        let start = Instant::now();
+        renderer.frame(&Frame::default())?;
+        seconds += start.elapsed().as_secs_f64();
+        made.push(Ready { variant, side, job, renderer });
+    }
+    Ok(Ok((made, bytes, seconds)))
+}
+
+fn time(ready: &mut [Ready], rounds: u32, watch: &mut dyn FnMut(bool) -> ControlFlow<()>) -> Result<Timed, LabError> {
+    let mut list = Vec::new();
+    for ready in ready {
+        let name = format!("{}, {}² photons", ready.variant.name(), ready.side);
+        let stages = ready.renderer.stages();
+        let frame = || Ok(ready.renderer.frame(&Frame::default())?);
+        list.push(timing::Variant { name, stages, frame: Box::new(frame) });
+    }
+    let mut begun = false;
+    Rounds { rounds, most_warmup: MOST_WARMUP, seed: SEED }
+        .run(&mut list, &mut |_| watch(!std::mem::replace(&mut begun, true)))
+}

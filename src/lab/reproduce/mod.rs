@@ -1,0 +1,67 @@
+//! A published table beside a run of it here: times of the same phases, the shape that they make, and the error of each
+//! picture, which no paper printed.
+
+mod columns;
+mod measure;
+mod report;
+
+use std::ops::ControlFlow;
+
+use super::{LabError, papers::Published};
+use crate::{gpu::Gpu, store::Store};
+
+pub use report::{CatalogueReport, ReproduceReport};
+
+/// How far a run goes.
+#[derive(Clone, Debug)]
+pub struct Extent {
+    /// Whether this is the quick run, which then says so.
+    pub quick: bool,
+    /// The largest N that is run.
+    pub most_side: u32,
+    /// Timed frames of each variant.
+    pub rounds: u32,
+    /// For all frames together, s; what does not fit is left out, and said.
+    pub seconds: f64,
+    /// For the truth, s.
+    pub truth_seconds: f64,
+    /// Of the picture, pixels.
+    pub size: [u32; 2],
+}
+
+impl Extent {
+    /// Small N and few frames: a minute on a software device.
+    pub fn quick() -> Self {
+        Self { quick: true, most_side: 512, rounds: 8, seconds: 40.0, truth_seconds: 10.0, size: [128, 128] }
+    }
+
+    /// Every N of the paper that the time and the device's memory allow.
+    pub fn whole(seconds: f64) -> Self {
+        let truth_seconds = 0.2 * seconds;
+        let size = [256, 256];
+        Self { quick: false, most_side: u32::MAX, rounds: 15, seconds: seconds - truth_seconds, truth_seconds, size }
+    }
+}
+
+/// What a run is told and asked: words for whoever watches, and whether to go on.
+pub type Watch<'w> = &'w mut dyn FnMut(&str) -> ControlFlow<()>;
+
+/// Whether any column of a table can be run.
+pub fn can_run(published: &Published) -> bool {
+    published.figures.iter().any(|figure| columns::runs(published, &figure.column).is_ok())
+}
+
+/// Runs what can be run of a table.
+///
+/// # Errors
+/// Those of rendering; [`LabError::Interrupted`] when `watch` breaks off.
+pub fn reproduce(
+    gpu: &Gpu,
+    store: &Store,
+    published: &Published,
+    extent: &Extent,
+    watch: Watch,
+) -> Result<ReproduceReport, LabError> {
+    let run = measure::run(gpu, store, published, extent, watch)?;
+    Ok(ReproduceReport::measured(published, extent, run))
+}

@@ -1,0 +1,75 @@
+//! A table run at a tiny size: what its report must hold.
+
+use std::ops::ControlFlow;
+
+use nephroid::{
+    gpu::Gpu,
+    lab::{self, Extent, Format, LabError, Report, papers},
+    store::Store,
+};
+use serde_json::Value;
+
+use crate::common::{assert_quiet, gpu};
+
+/// One N of the paper, few pixels, a truth of a second.
+fn extent() -> Extent {
+    Extent { quick: true, most_side: 256, rounds: 8, seconds: 60.0, truth_seconds: 1.0, size: [32, 32] }
+}
+
+fn run(gpu: &Gpu, id: &str, extent: &Extent) -> Value {
+    let published = papers::find(id).unwrap();
+    let go = &mut |_: &str| ControlFlow::Continue(());
+    let report = lab::reproduce(gpu, &Store::open(), &published, extent, go).unwrap_or_else(|e| panic!("{id}: {e}"));
+    serde_json::from_slice(&report.write(Format::Json).unwrap()).unwrap()
+}
+
+#[test]
+fn what_runs_is_measured_with_all_that_it_depends_on() {
+    let gpu = gpu();
+    for (id, columns) in [("maps.table2", 3), ("maps.table3", 4)] {
+        let report = run(&gpu, id, &extent());
+        assert_eq!(report["schema"], "nephroid.reproduce/1");
+        let rows = report["rows"].as_array().unwrap();
+        assert_eq!(rows.len(), papers::find(id).unwrap().figures.len());
+        let keys = ["row", "column", "unit", "published", "measured", "ratio", "relmse", "missing"];
+        for row in rows {
+            let row = row.as_object().unwrap();
+            assert_eq!(row.keys().collect::<Vec<_>>(), keys);
+            assert_eq!(row["measured"].is_null(), row["missing"].is_string(), "{row:?}");
+            assert_eq!(row["measured"].is_null(), row["relmse"].is_null(), "{row:?}");
+        }
+        let measured: Vec<&Value> = rows.iter().filter(|row| !row["measured"].is_null()).collect();
+        assert_eq!(measured.len(), columns, "{id}: one N alone");
+        for row in measured {
+            let of = |key: &str| row["measured"][key].as_f64().unwrap();
+            assert_eq!(row["row"], 256);
+            assert!(of("value") > 0.0 && of("low") <= of("value") && of("value") <= of("high"), "{row}");
+            assert!(row["relmse"]["value"].as_f64().unwrap() > 0.0);
+        }
+        for known in ["scene", "device", "size", "repeats", "reference"] {
+            assert!(!report[known].is_null(), "{id}: {known}");
+        }
+        assert_eq!(report["settings"]["light.tracer"], "wyman2005");
+        assert_eq!(report["settings"]["light.view"], "shared");
+        let shares = report["photons"].as_array().unwrap();
+        assert!(shares.iter().all(|p| p["valid_photons"].as_f64().is_some_and(|share| share > 0.1 && share < 1.0)));
+        assert_eq!(report["shape"].as_array().unwrap().len(), columns - 1, "each column beside the first");
+    }
+    assert_quiet(&gpu);
+}
+
+#[test]
+fn what_the_time_does_not_allow_is_left_out_and_said() {
+    let gpu = gpu();
+    let report = run(&gpu, "maps.table2", &Extent { most_side: 4096, seconds: 1e-3, ..extent() });
+    let rows = report["rows"].as_array().unwrap();
+    let late = rows.iter().filter(|row| row["missing"].as_str().is_some_and(|why| why.contains("--max-seconds")));
+    assert_eq!(late.count(), 12, "all but the smallest N");
+}
+
+#[test]
+fn whoever_watches_can_stop_it() {
+    let stop = &mut |_: &str| ControlFlow::Break(());
+    let stopped = lab::reproduce(&gpu(), &Store::open(), &papers::find("maps.table2").unwrap(), &extent(), stop);
+    assert!(matches!(stopped, Err(LabError::Interrupted)));
+}
