@@ -7,6 +7,7 @@ mod compare;
 mod failure;
 mod list;
 mod output;
+mod plot;
 mod progress;
 mod render;
 mod sequence;
@@ -47,6 +48,8 @@ enum Command {
     Truth(truth::TruthArgs),
     /// Hold every tracer against exact intersection on a scene's light, texel by texel
     Tracers(tracers::TracersArgs),
+    /// Plot results: error against time, cost against photons, stages, error budgets; compare at equal time and error
+    Plot(plot::PlotArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -73,6 +76,7 @@ impl Cli {
             Command::Compare(args) => compare::run(&args),
             Command::Truth(args) => truth::run(&args),
             Command::Tracers(args) => tracers::run(&args),
+            Command::Plot(args) => plot::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Doctor(args) => list::doctor(&args),
