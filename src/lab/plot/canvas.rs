@@ -51,6 +51,11 @@ pub struct Canvas {
 }
 
 impl Canvas {
+    /// An empty one, this wide.
+    pub fn new(width: f64) -> Self {
+        Self { size: [width, 0.0], ..Self::default() }
+    }
+
     /// Every text so far.
     pub fn texts(&self) -> &[Written] {
         &self.texts

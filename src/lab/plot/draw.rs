@@ -36,7 +36,7 @@ const INSET: f64 = 7.0;
 
 /// Draws a chart.
 pub fn draw(chart: &Chart) -> Canvas {
-    let mut canvas = Canvas { size: [WIDTH, 0.0], ..Default::default() };
+    let mut canvas = Canvas::new(WIDTH);
     let bottom = match &chart.body {
         Body::Marks(panels) => draw_panels(&mut canvas, chart, panels),
         Body::Bars(unit, panels) => draw_bars(&mut canvas, unit, panels),
