@@ -118,7 +118,7 @@ fn cost(results: &Results) -> Made {
             place: point.place.clone(),
         })
     };
-    let mut caption = vec!["Time: median of a frame. Bars: intervals as measured.".to_owned()];
+    let mut caption = vec!["Time: median, of a frame or of the column named. Bars: intervals as measured.".to_owned()];
     let mut panels: Vec<Panel> = groups(&results.points).iter().filter_map(|group| panel(group, mark, false)).collect();
     match results.points.iter().filter(|point| point.photons == 0).count() {
         0 => {}

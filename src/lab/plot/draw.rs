@@ -192,7 +192,7 @@ impl Drawing<'_> {
     fn names(&self) -> [String; 2] {
         match self.chart.kind {
             Kind::ErrorTime => ["time of a frame (ms)".to_owned(), format!("error: {} (no unit)", self.chart.measure)],
-            _ => ["N (photons)".to_owned(), "time of a frame (ms)".to_owned()],
+            _ => ["N (photons)".to_owned(), "time (ms)".to_owned()],
         }
     }
 
@@ -252,6 +252,7 @@ impl Drawing<'_> {
         let mut boxes = Vec::new();
         for series in &self.panel.series {
             boxes.extend(series.marks.iter().map(|mark| around(frame.of(mark), MARKER)));
+            boxes.extend(series.marks.iter().filter(|mark| mark.is_placeable()).flat_map(|mark| bars(frame, mark)));
             if series.marks.len() > LINED {
                 continue;
             }
@@ -264,6 +265,20 @@ impl Drawing<'_> {
         }
         boxes
     }
+}
+
+/// The boxes that a mark's intervals fill.
+fn bars(frame: &Frame, mark: &Mark) -> impl Iterator<Item = Area> {
+    let (x, y) = (mark.x.value.0, mark.y.value.0);
+    let along = mark.x.interval().map(|ends| ends.map(|end| frame.at(end, y)));
+    let up = mark.y.interval().map(|ends| ends.map(|end| frame.at(x, end)));
+    let around = |[a, b]: [[f64; 2]; 2]| Area {
+        x: a[0].min(b[0]) - 1.0,
+        y: a[1].min(b[1]) - 1.0,
+        w: (b[0] - a[0]).abs() + 2.0,
+        h: (b[1] - a[1]).abs() + 2.0,
+    };
+    along.into_iter().chain(up).map(around)
 }
 
 /// Which values of a mark have no place.

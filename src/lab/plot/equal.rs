@@ -91,7 +91,10 @@ fn compared(panel: &str, device: &str, fronts: &[(&str, Front)], axis: Axis, at:
     let measured = readings.iter().filter_map(|(name, reading)| reading.map(|reading| (*name, reading)));
     let best = measured.min_by(|a, b| a.1.value.total_cmp(&b.1.value));
     let row = |(name, reading): &(&str, Option<Reading>)| {
-        let ratio = best.zip(*reading).map(|((_, best), this)| over(&this, &best));
+        let ratio = best.zip(*reading).map(|((of, best), this)| {
+            // The best over itself is 1, certainly.
+            if of == *name { Reading { value: 1.0, spread: Some([0.0, 0.0]) } } else { over(&this, &best) }
+        });
         EqualRow {
             panel: panel.to_owned(),
             equal: if axis == Axis::X { "time" } else { "error" },

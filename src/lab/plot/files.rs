@@ -134,7 +134,13 @@ fn axes(chart: &Chart) -> [[&'static str; 3]; 2] {
 }
 
 fn cells(estimate: &Estimate) -> [Cell; 3] {
-    let cell = |value: f64| Cell::text(value.to_string());
+    let cell = |value: f64| Cell::Real(value, decimals(value));
     let end = |end: Option<super::Number>| end.map_or(Cell::None, |end| cell(end.0));
     [cell(estimate.value.0), end(estimate.low), end(estimate.high)]
+}
+
+/// Of four digits that count.
+fn decimals(value: f64) -> usize {
+    let power = if value == 0.0 || !value.is_finite() { 0.0 } else { value.abs().log10().floor() };
+    (3.0 - power).clamp(0.0, 15.0) as usize
 }

@@ -42,6 +42,8 @@ pub struct Wanted {
 
 /// From the point to the label's nearest edge, px.
 const GAP: f64 = 7.0;
+/// Of it, where the label touches with a corner: beyond the marker still.
+const DIAGONAL: f64 = 0.75;
 /// Where the label's centre stands from the point: right above first, then around.
 const AROUND: [[f64; 2]; 8] =
     [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [0.0, -1.0], [0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]];
@@ -65,6 +67,6 @@ pub fn place(frame: &Area, obstacles: &[Area], wanted: &[Wanted]) -> Vec<Option<
 fn beside(label: &Wanted, [dx, dy]: [f64; 2]) -> Area {
     let ([x, y], [w, h]) = (label.at, label.size);
     // Diagonal places touch with a corner, which stands nearer than an edge would.
-    let gap = if dx != 0.0 && dy != 0.0 { GAP * 0.6 } else { GAP };
+    let gap = if dx != 0.0 && dy != 0.0 { GAP * DIAGONAL } else { GAP };
     Area { x: x + dx * (gap + w / 2.0) - w / 2.0, y: y + dy * (gap + h / 2.0) - h / 2.0, w, h }
 }
