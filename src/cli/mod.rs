@@ -9,6 +9,7 @@ mod compare;
 mod failure;
 mod list;
 mod output;
+mod plot;
 mod progress;
 mod render;
 mod reproduce;
@@ -59,6 +60,8 @@ enum Command {
     Against(against::AgainstArgs),
     /// Do many points, scenes × methods × settings, in shards that may be killed; each is kept as soon as it is done
     Sweep(sweep::SweepArgs),
+    /// Plot results: error against time, cost against photons, stages, error budgets; compare at equal time and error
+    Plot(plot::PlotArgs),
     /// Print what a frame would run and hold, and what it leaves out; needs no device
     Plan(args::PlanArgs),
     /// List devices, and which methods run on each
@@ -89,6 +92,7 @@ impl Cli {
             Command::Tracers(args) => tracers::run(&args),
             Command::Against(args) => against::run(&args),
             Command::Sweep(args) => sweep::run(&args),
+            Command::Plot(args) => plot::run(&args),
             Command::Plan(args) => list::plan(&args),
             Command::Devices(args) => list::devices(&args),
             Command::Doctor(args) => list::doctor(&args),

@@ -1,0 +1,105 @@
+//! Which points belong together: one scene a panel; in it one method, one set of settings and one device a series.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{
+    chart::{Mark, Panel, Series},
+    pareto::{Front, mark_front},
+    result::Point,
+};
+
+/// The axis along which a series runs: never part of its name.
+const ALONG: &str = "light.side";
+/// Settings of the scene make another scene.
+const OF_SCENE: &str = "scene.";
+
+/// The points of one scene, by series.
+pub struct Group<'a> {
+    /// Scene, camera, size.
+    pub title: String,
+    /// By name.
+    pub series: BTreeMap<Name, Vec<&'a Point>>,
+}
+
+/// What a series is called, and where it ran.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Name {
+    /// Method and settings.
+    pub name: String,
+    /// The device.
+    pub device: String,
+}
+
+/// Points by scene and series, each in the order of their names.
+pub fn groups(points: &[Point]) -> Vec<Group<'_>> {
+    let mut scenes: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
+    for point in points {
+        scenes.entry(title(point)).or_default().push(point);
+    }
+    scenes.into_iter().map(|(title, points)| Group { title, series: split(&points) }).collect()
+}
+
+fn title(point: &Point) -> String {
+    let [width, height] = point.size;
+    let changed = point.set.iter().filter(|(key, _)| key.starts_with(OF_SCENE));
+    let changed: String = changed.map(|(key, value)| format!(", {}={value}", &key[OF_SCENE.len()..])).collect();
+    let camera = if point.camera.is_empty() { String::new() } else { format!(", camera {}", point.camera) };
+    format!("{}{changed}{camera}, {width} × {height}", point.scene)
+}
+
+fn split<'a>(points: &[&'a Point]) -> BTreeMap<Name, Vec<&'a Point>> {
+    let differing = differing(points);
+    let devices: BTreeSet<_> = points.iter().map(|point| &point.device).collect();
+    let mut series: BTreeMap<Name, Vec<&Point>> = BTreeMap::new();
+    for point in points {
+        let settings = differing.iter().filter_map(|key| value(point, key).map(|value| format!(" {key}={value}")));
+        let on = if devices.len() > 1 { format!(" on {}", point.device) } else { String::new() };
+        let name = format!("{}{}{on}", point.method, settings.collect::<String>());
+        series.entry(Name { name, device: point.device.clone() }).or_default().push(point);
+    }
+    for points in series.values_mut() {
+        points.sort_by(|a, b| a.photons.cmp(&b.photons).then(a.time.value.0.total_cmp(&b.time.value.0)));
+    }
+    series
+}
+
+/// Keys that some point sets, of which two points that have them differ.
+fn differing<'a>(points: &[&'a Point]) -> Vec<&'a str> {
+    let along = |key: &str| key == ALONG || key.starts_with(OF_SCENE);
+    let keys: BTreeSet<_> =
+        points.iter().flat_map(|point| point.set.keys()).map(String::as_str).filter(|key| !along(key)).collect();
+    let differs = |key: &&str| {
+        let mut values: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
+        for point in points {
+            values.entry(&point.method).or_default().insert(value(point, key));
+        }
+        let stated: BTreeSet<_> = values.values().flatten().flatten().collect();
+        stated.len() > 1 || values.values().any(|of_method| of_method.len() > 1)
+    };
+    keys.into_iter().filter(differs).collect()
+}
+
+/// What the point sets, or else what is in force.
+fn value<'a>(point: &'a Point, key: &str) -> Option<&'a str> {
+    point.set.get(key).or_else(|| point.settings.get(key)).map(String::as_str)
+}
+
+/// A panel of a group, `mark` giving the point's place, if it has one. Series without marks are left out.
+pub fn panel(group: &Group, mark: impl Fn(&Point) -> Option<Mark>, with_front: bool) -> Option<Panel> {
+    let mut series: Vec<Series> = Vec::new();
+    for (name, points) in &group.series {
+        let mut marks: Vec<Mark> = points.iter().filter_map(|point| mark(point)).collect();
+        if with_front {
+            mark_front(&mut marks);
+        }
+        if !marks.is_empty() {
+            series.push(Series { name: name.name.clone(), device: name.device.clone(), marks });
+        }
+    }
+    let devices: BTreeSet<_> = series.iter().map(|series| &series.device).collect();
+    let front = match with_front && devices.len() == 1 {
+        true => Front::of(series.iter().flat_map(|series| &series.marks)).places(),
+        false => Vec::new(),
+    };
+    (!series.is_empty()).then(|| Panel { title: group.title.clone(), series, front })
+}
