@@ -240,7 +240,7 @@ fn edges(panels: &[Panel]) -> Option<String> {
             let name = match value {
                 v if v.is_nan() => "not a number",
                 v if v == f64::INFINITY => "infinite",
-                v if v == 0.0 => "zero",
+                0.0 => "zero",
                 v if v < 0.0 => "below zero",
                 _ => continue,
             };

@@ -286,7 +286,7 @@ fn at_edge(mark: &Mark) -> String {
     let name = |value: f64| match value {
         v if v.is_nan() => Some("NaN"),
         v if v.is_infinite() => Some("∞"),
-        v if v == 0.0 => Some("0"),
+        0.0 => Some("0"),
         v if v < 0.0 => Some("< 0"),
         _ => None,
     };

@@ -61,7 +61,7 @@ pub fn equal_rows(panel: &Panel, times: &[f64], errors: &[f64]) -> Vec<EqualRow>
 /// Round values where most fronts were measured, spread over that range; its middle where none is round.
 fn chosen(fronts: &[(&str, Front)], axis: Axis) -> Vec<f64> {
     let ranges: Vec<_> = fronts.iter().filter_map(|(_, front)| front.range(axis)).collect();
-    let covering = |at: f64| ranges.iter().filter(|[low, high]| (*low..=*high).contains(&&at)).count();
+    let covering = |at: f64| ranges.iter().filter(|[low, high]| (*low..=*high).contains(&at)).count();
     let most = ranges.iter().flatten().map(|at| covering(*at)).max().unwrap_or(0);
     if most < 2 {
         return Vec::new();
