@@ -21,8 +21,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "colour bands swapped",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(flux.rgb / norm, p, layer);",
-        new: "s = Splat(flux.bgr / norm, p, layer);",
+        old: "s = Splat(photon_flux(flux.rgb) / norm, p, layer);",
+        new: "s = Splat(photon_flux(flux.bgr) / norm, p, layer);",
         check: &FLAT_WATER,
     },
     Fault {
@@ -63,22 +63,22 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "splat weights sum to 1.02",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(flux.rgb / norm, p, layer);",
-        new: "s = Splat(1.02 * flux.rgb / norm, p, layer);",
+        old: "s = Splat(photon_flux(flux.rgb) / norm, p, layer);",
+        new: "s = Splat(1.02 * photon_flux(flux.rgb) / norm, p, layer);",
         check: &DEPOSITED,
     },
     Fault {
         name: "one photon in fifty lost",
-        file: "maps/photon_splat.glsl",
-        old: "if (hit.w == 0.0) return false;",
-        new: "if (hit.w == 0.0 || (texel.x + 7 * texel.y) % 50 == 0) return false;",
+        file: "maps/gather_fixed.comp",
+        old: "if (any(greaterThanEqual(texel,",
+        new: "if ((texel.x + 7 * texel.y) % 50 == 0 || any(greaterThanEqual(texel,",
         check: &DEPOSITED,
     },
     Fault {
         name: "NaN in the splats",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(flux.rgb / norm, p, layer);",
-        new: "s = Splat(flux.rgb / sqrt(-norm), p, layer);",
+        old: "s = Splat(photon_flux(flux.rgb) / norm, p, layer);",
+        new: "s = Splat(photon_flux(flux.rgb) / sqrt(-norm), p, layer);",
         check: &DEPOSITED,
     },
     Fault {
