@@ -78,6 +78,13 @@ fn nothing_to_plot_is_a_failure_that_says_so() {
     company["alone"] = json!(false);
     let (_folder, file) = points_file(&[company]);
     refused(&file, 1, &["1 point left out", "another point ran"]);
+    let mut failed = point("s", "maps", 64, 1.0, json!(0.5));
+    for gone in ["time", "stages", "error"] {
+        failed.as_object_mut().unwrap().remove(gone);
+    }
+    failed["failed"] = json!("too large for the device");
+    let (_folder, file) = points_file(&[failed]);
+    refused(&file, 1, &["points.jsonl:1: left out, it failed: too large for the device"]);
     let (folder, file) = points_file(&[]);
     fs::remove_file(&file).unwrap();
     refused(&folder.path().join("points.jsonl"), 1, &["points.jsonl", "cannot be read"]);

@@ -17,6 +17,8 @@ const POINTS: &str = "points.jsonl";
 const SCHEMAS: [&str; 4] = ["nephroid.point/1", "nephroid.render/1", "nephroid.budget/1", "nephroid.reproduce/1"];
 /// Longest quotation of somebody's file in an error, characters.
 const QUOTED: usize = 40;
+/// Longest reason of a failed point in a note, characters.
+const REASON: usize = 200;
 
 /// Why results cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -123,6 +125,11 @@ impl Results {
             problem: format!("no {schema} ({})", bare(&error)),
         };
         match schema.as_str() {
+            // A point that could not be made has a reason, and nothing to draw.
+            "nephroid.point/1" if value["failed"].is_string() => {
+                let reason: String = value["failed"].as_str().unwrap_or_default().chars().take(REASON).collect();
+                self.notes.push(format!("{place}: left out, it failed: {reason}"));
+            }
             "nephroid.point/1" => self.points.push(result::point(value, &place).map_err(shape)?),
             "nephroid.render/1" => self.points.push(result::render(value, &place).map_err(shape)?),
             "nephroid.budget/1" => self.budgets.push(result::budget(value, &place).map_err(shape)?),
