@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum, builder::PossibleValue};
 
 use super::Failure;
 use crate::{
+    gpu::{DeviceChoice, GpuOptions},
     lab::{Format, Sequence},
     methods::{self, Method},
     names::NoSuch,
@@ -18,9 +19,8 @@ use crate::{
 pub struct RenderArgs {
     #[command(flatten)]
     pub job: JobArgs,
-    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
-    #[arg(long, value_name = "D")]
-    pub device: Option<String>,
+    #[command(flatten)]
+    pub device: DeviceArgs,
     /// Frames before timing begins
     #[arg(long, value_name = "W", default_value_t = 1)]
     pub warmup: u32,
@@ -51,6 +51,21 @@ pub struct RenderArgs {
     /// Folder for the results; made where it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+#[derive(Args)]
+pub struct DeviceArgs {
+    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
+    #[arg(long, value_name = "D")]
+    device: Option<String>,
+}
+
+impl DeviceArgs {
+    /// To open it with.
+    pub fn options(&self) -> GpuOptions {
+        let device = self.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
+        GpuOptions { device, ..GpuOptions::default() }
+    }
 }
 
 #[derive(Args)]

@@ -7,14 +7,14 @@ use clap::Args;
 
 use super::{
     Failure,
-    args::{ListArgs, parse_noise, parse_seconds, parse_set, parse_size, scene_and_settings},
+    args::{DeviceArgs, ListArgs, parse_noise, parse_seconds, parse_set, parse_size, scene_and_settings},
     output::{print, say, warn},
     progress::TruthProgress,
     render::{arguments, refuse_messages},
     signals,
 };
 use crate::{
-    gpu::{DeviceChoice, Gpu, GpuOptions},
+    gpu::{Gpu, GpuOptions},
     lab::{
         self, Provenance, Report,
         budget::{Budget, BudgetReport, Progress, write_budget},
@@ -64,9 +64,8 @@ pub struct BudgetArgs {
     /// Seed of the truths' photons
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
-    #[arg(long, value_name = "D")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Run under the validation layers; any message is a failure
     #[arg(long)]
     validation: bool,
@@ -98,8 +97,7 @@ pub fn run(args: &BudgetArgs) -> Result<(), Failure> {
     warn(&job.scene.warnings);
     let stop = signals::stop_flag()?;
     let folder = args.out.as_deref().map(OutFolder::stage).transpose()?;
-    let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
-    let gpu = Gpu::new(&GpuOptions { device, validation: args.validation, capture: false })?;
+    let gpu = Gpu::new(&GpuOptions { validation: args.validation, ..args.device.options() })?;
     say(&format!("device: {}", gpu.info().label()));
     let noise = args.until.or(args.photons.is_none().then_some(NOISE));
     let goal = Goal { photons: args.photons, noise };

@@ -16,7 +16,7 @@ use super::{
     sequence, signals,
 };
 use crate::{
-    gpu::{DeviceChoice, Gpu, GpuError, GpuOptions, Plan, Sources},
+    gpu::{Gpu, GpuError, GpuOptions, Plan, Sources},
     lab::{self, Experiment, Measured, Provenance, RenderReport, Report, Run},
     passes::eye,
     renderer::{self, Frame, Job, Planned, RenderError, Renderer},
@@ -58,8 +58,7 @@ pub fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
 }
 
 pub(super) fn open(args: &RenderArgs) -> Result<Gpu, Failure> {
-    let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
-    Ok(Gpu::new(&GpuOptions { device, validation: args.validation, capture: args.capture })?)
+    Ok(Gpu::new(&GpuOptions { validation: args.validation, capture: args.capture, ..args.device.options() })?)
 }
 
 /// Prepares and runs the experiment under a bar; also says how long it took to get ready, ms.

@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::{
     Failure,
-    args::{ListArgs, parse_seconds},
+    args::{DeviceArgs, ListArgs, parse_seconds},
     output::{print, say},
     signals,
 };
 use crate::{
-    gpu::{DeviceChoice, Gpu, GpuOptions},
+    gpu::Gpu,
     lab::{self, CatalogueReport, Extent, Report, ReproduceReport, papers},
     store::Store,
     whole::OutFolder,
@@ -30,9 +30,8 @@ pub struct ReproduceArgs {
     /// Small N, few frames: a minute at most on a software device
     #[arg(long)]
     quick: bool,
-    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
-    #[arg(long, value_name = "D")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// The most time for frames and truth; N that would take longer are left out, and said [default: 600]
     #[arg(long, value_name = "S", value_parser = parse_seconds, conflicts_with = "quick")]
     max_seconds: Option<f64>,
@@ -53,8 +52,7 @@ pub fn run(args: &ReproduceArgs) -> Result<(), Failure> {
     let stop = signals::stop_flag()?;
     let folder = args.out.as_deref().map(OutFolder::stage).transpose()?;
     let report = if lab::can_run(&published) {
-        let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
-        let gpu = Gpu::new(&GpuOptions { device, validation: false, capture: false })?;
+        let gpu = Gpu::new(&args.device.options())?;
         lab::reproduce(&gpu, &Store::open(), &published, &extent, &mut |what| {
             if !what.is_empty() {
                 say(what);

@@ -13,13 +13,13 @@ use clap::{Args, Subcommand};
 
 use super::{
     Failure,
-    args::{ListArgs, parse_seconds},
+    args::{DeviceArgs, ListArgs, parse_seconds},
     output::{print, say, warn},
     progress::CountProgress,
     signals,
 };
 use crate::{
-    gpu::{DeviceChoice, Gpu, GpuOptions, Sources},
+    gpu::{Gpu, Sources},
     lab::{
         LabError, Report,
         sweep::{self, Bench, Host, Shard, State, Status, Sweep, SweepError},
@@ -53,9 +53,8 @@ struct FileArgs {
     /// The sweep (scenes/sweeps/README.md says how one is written)
     #[arg(value_name = "FILE.toml")]
     file: String,
-    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
-    #[arg(long, value_name = "D")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: DeviceArgs,
 }
 
 #[derive(Args)]
@@ -120,8 +119,7 @@ pub fn run(args: &SweepArgs) -> Result<(), Failure> {
 fn with_bench(args: &FileArgs, then: impl FnOnce(&Bench) -> Result<(), Failure>) -> Result<(), Failure> {
     let sweep = Sweep::load(&args.file)?;
     let store = sweep::store()?;
-    let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
-    let gpu = Gpu::new(&GpuOptions { device, ..Default::default() })?;
+    let gpu = Gpu::new(&args.device.options())?;
     then(&Bench { sweep: &sweep, gpu: &gpu, sources: Sources::default(), store })
 }
 

@@ -7,13 +7,13 @@ use clap::Args;
 
 use super::{
     Failure,
-    args::{ListArgs, parse_set, scene_and_settings},
+    args::{DeviceArgs, ListArgs, parse_set, scene_and_settings},
     output::{print, say},
     render::{arguments, refuse_messages},
     signals,
 };
 use crate::{
-    gpu::{DeviceChoice, Gpu, GpuOptions},
+    gpu::{Gpu, GpuOptions},
     lab::{self, Compared, Format, Provenance, Report, Subject, TracersReport},
     methods::maps,
     passes::light::{self, SIDE, TRACER},
@@ -28,9 +28,8 @@ pub struct TracersArgs {
     /// A setting but light.tracer, or any value of the scene as scene.PATH=VALUE; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = parse_set)]
     set: Vec<(String, String)>,
-    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
-    #[arg(long, value_name = "D")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Timed frames of each tracer
     #[arg(long, value_name = "R", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
@@ -53,8 +52,7 @@ pub fn run(args: &TracersArgs) -> Result<(), Failure> {
     let job = Job { scene, providers: Providers::default(), settings, camera: "region".to_owned(), size: [1, 1] };
     let stop = signals::stop_flag()?;
     let folder = args.out.as_deref().map(OutFolder::stage).transpose()?;
-    let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
-    let gpu = Gpu::new(&GpuOptions { device, validation: args.validation, capture: false })?;
+    let gpu = Gpu::new(&GpuOptions { validation: args.validation, ..args.device.options() })?;
     say(&format!("device: {}", gpu.info().label()));
     let map_texel = job.scene.region.area().sqrt() / f64::from(job.settings.whole(&maps::SIDE));
     let compared = lab::compare_tracers(&gpu, &job, args.repeat, map_texel, &mut |tracer| {

@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::{
     Failure,
-    args::{JobArgs, ListArgs},
+    args::{DeviceArgs, JobArgs, ListArgs},
     output::{print, say, warn},
     render::arguments,
 };
 use crate::{
-    gpu::{DeviceChoice, GpuOptions},
+    gpu::GpuOptions,
     lab::{self, Report},
     renderer,
     window::{self, Viewing},
@@ -21,9 +21,8 @@ use crate::{
 pub struct ViewArgs {
     #[command(flatten)]
     job: JobArgs,
-    /// Device by index, part of its name, or UUID; by default discrete, then integrated, then software
-    #[arg(long, value_name = "D")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: DeviceArgs,
     /// Close after N timed frames and print the medians of their stages; the first frame of a plan is not timed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     frames: Option<u32>,
@@ -42,8 +41,7 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
     let job = args.job.job()?;
     renderer::plan(&job)?;
     warn(&job.scene.warnings);
-    let device = args.device.clone().map_or(DeviceChoice::Best, DeviceChoice::Named);
-    let gpu = GpuOptions { device, validation: args.validation, capture: false };
+    let gpu = GpuOptions { validation: args.validation, ..args.device.options() };
     let ev = lab::exposure(&job.settings, &job.scene);
     let arguments = arguments(std::env::args_os(), "--screenshot");
     let viewing = Viewing { gpu, frames: args.frames, screenshot: args.screenshot.clone(), arguments, ev, say };

@@ -7,7 +7,7 @@ use super::{
     Cell, Report, Table,
     compare::{Comparison, Constants, MEASURES},
 };
-use crate::metrics::Measure;
+use crate::{metrics::Measure, stats::Number};
 
 /// The result of `nephroid compare`.
 #[derive(Debug, Serialize)]
@@ -87,19 +87,14 @@ fn by_name<S: Serializer>(measures: &[Measure; 8], serializer: S) -> Result<S::O
 }
 
 pub(super) fn json(measure: &Measure) -> Value {
-    let bound = |bound: Option<f64>| bound.map_or(Value::Null, number);
+    let bound = |bound: Option<f64>| bound.map_or(Value::Null, |x| Number(x).into());
     serde_json::json!({
-        "value": number(measure.value),
+        "value": Number(measure.value),
         "low": bound(measure.low),
         "high": bound(measure.high),
         "truth_noise": bound(measure.truth_noise),
         "below_noise": measure.is_noise(),
     })
-}
-
-/// JSON has no infinity, and its null would pass for small: the word passes for nothing.
-fn number(value: f64) -> Value {
-    if value.is_finite() { value.into() } else { "infinity".into() }
 }
 
 /// Five digits, at any scale.

@@ -114,10 +114,16 @@ pub trait Method: Sync {
     fn paper(&self) -> &'static str;
     /// What it fills.
     fn slots(&self) -> &'static [Slot];
-    /// What it needs of a device beyond what every frame does.
-    fn needs(&self) -> &'static [Feature];
+    /// What it needs of a device beyond what every frame does: nothing, if it does not say.
+    fn needs(&self) -> &'static [Feature] {
+        &[]
+    }
+
     /// Its settings.
-    fn settings(&self) -> &'static [Setting];
+    fn settings(&self) -> &'static [Setting] {
+        &[]
+    }
+
     /// The photon columns it reads.
     fn columns(&self) -> &'static [Column];
     /// Whether it wants them all in float16.
@@ -128,7 +134,10 @@ pub trait Method: Sync {
     fn stages(&self) -> &'static [&'static str];
     /// Where its error comes from: the pictures of `nephroid budget`, from the truth of all paths to the picture as it
     /// comes.
-    fn chain(&self) -> &'static [Link];
+    fn chain(&self) -> &'static [Link] {
+        &[]
+    }
+
     /// Begins planning: images and buffers that all views share.
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError>;
 }

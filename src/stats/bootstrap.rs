@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
 
-use super::{median, percentile};
+use super::{median, percentile, write_number};
 
 /// The confidence of every interval that the lab prints.
 pub const CONFIDENCE: f64 = 0.99;
@@ -17,10 +17,13 @@ const RESAMPLES: usize = 2000;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// The value of the sample.
+    #[serde(serialize_with = "write_number")]
     pub value: f64,
     /// Lower end.
+    #[serde(serialize_with = "write_number")]
     pub low: f64,
     /// Upper end.
+    #[serde(serialize_with = "write_number")]
     pub high: f64,
 }
 

@@ -4,9 +4,11 @@
 //! and wins no comparison.
 
 mod bootstrap;
+mod number;
 mod series;
 
 pub use bootstrap::{CONFIDENCE, Interval, bootstrap_change, bootstrap_median, bootstrap_ratio};
+pub use number::{Number, write_number};
 pub use series::{Change, Moves, change_of, is_settled};
 
 /// The middle value; the mean of the two middle ones for an even count.

@@ -28,6 +28,7 @@ fn what_changed_is_told_from_noise() {
     assert_eq!(report["schema"], "nephroid.against/1");
     let verdicts: Vec<_> = report["lines"].as_array().unwrap().iter().map(|line| &line["ratio"]["verdict"]).collect();
     assert_eq!(verdicts, ["slower", "no difference shown"], "two samples tell nothing");
+    assert_eq!(report["lines"][1]["ratio"]["high"], "infinity", "null would pass for nothing");
     assert_eq!(report["unmatched"], serde_json::json!(["new"]));
     let table = nephroid(&format!("against {before} {after}")).ok();
     assert!(table.out.contains("1.200") && table.out.contains("more"), "{}", table.out);

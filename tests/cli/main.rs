@@ -9,6 +9,8 @@ mod gltf;
 mod lists;
 mod models;
 mod no_room;
+#[path = "../common/ran.rs"]
+mod ran;
 mod render;
 mod repeat;
 mod scenes;
@@ -17,55 +19,14 @@ mod tracers;
 
 use std::{
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::Command,
 };
 
+use ran::{Ran, rows};
 use tempfile::TempDir;
 
 /// A render small enough for a software device.
 const SMALL: &str = "--size 48x32 --set light.side=64 --set maps.side=64 --warmup 0 --repeat 2";
-
-/// What a run of the program left.
-struct Ran {
-    code: Option<i32>,
-    out: String,
-    err: String,
-}
-
-impl From<Output> for Ran {
-    fn from(output: Output) -> Self {
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program writes UTF-8");
-        let ran = Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) };
-        assert!(!ran.err.contains("panicked"), "{}", ran.err);
-        assert!(!format!("{}{}", ran.out, ran.err).contains('\x1b'), "colours where no terminal is");
-        ran
-    }
-}
-
-impl Ran {
-    #[track_caller]
-    fn ok(self) -> Self {
-        assert_eq!(self.code, Some(0), "{}", self.err);
-        self
-    }
-
-    #[track_caller]
-    fn json(&self) -> serde_json::Value {
-        serde_json::from_str(&self.out).expect("JSON on stdout")
-    }
-
-    #[track_caller]
-    fn rows(&self) -> Vec<Vec<String>> {
-        rows(self.out.as_bytes())
-    }
-}
-
-/// Records of a CSV, the header first; all are of one length, or this fails.
-#[track_caller]
-fn rows(csv: &[u8]) -> Vec<Vec<String>> {
-    let records = csv::ReaderBuilder::new().has_headers(false).from_reader(csv).into_records();
-    records.map(|r| r.expect("a record of the header's length").iter().map(str::to_owned).collect()).collect()
-}
 
 /// The program, with a cache that only these tests share.
 fn program() -> Command {

@@ -3,13 +3,13 @@
 
 mod auto;
 mod malformed;
+#[path = "../common/ran.rs"]
+mod ran;
 
-use std::{
-    path::Path,
-    process::{Command, Output},
-};
+use std::{path::Path, process::Command};
 
 use nephroid::image::{Layers, Provenance};
+use ran::Ran;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -49,27 +49,6 @@ impl Picture {
         let path = folder.path().join(name);
         std::fs::write(&path, layers.to_exr(&self.about).expect("encodes")).expect("writes");
         path.display().to_string()
-    }
-}
-
-struct Ran {
-    code: Option<i32>,
-    out: String,
-    err: String,
-}
-
-impl Ran {
-    fn json(&self) -> Value {
-        serde_json::from_str(&self.out).unwrap_or_else(|_| panic!("no JSON on stdout: {}{}", self.out, self.err))
-    }
-}
-
-impl From<Output> for Ran {
-    fn from(output: Output) -> Self {
-        let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-        let ran = Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) };
-        assert!(!ran.err.contains("panicked"), "{}", ran.err);
-        ran
     }
 }
 

@@ -34,7 +34,7 @@ fn crowd(count: u64, methods: u64) -> Vec<Value> {
 
 fn hard() -> Vec<Value> {
     let mut points = curve("s", "maps", 1.0);
-    let values = [(5.0, json!(0.0)), (6.0, json!("inf")), (7.0, json!("nan")), (0.0, json!(0.3)), (0.0, json!("nan"))];
+    let values = [(5.0, json!(0.0)), (6.0, json!("infinity")), (7.0, json!("nan")), (0.0, json!(0.3)), (0.0, json!("nan"))];
     points.extend(values.into_iter().map(|(time, error)| point("s", "lines", 32, time, error)));
     points
 }
@@ -74,7 +74,7 @@ const LABELS: [&str; 6] =
 
 #[test]
 fn the_csv_holds_every_point_drawn() {
-    let points = [curve("s", "maps", 1.0), vec![point("s", "maps", 32, 20.0, json!("inf"))]].concat();
+    let points = [curve("s", "maps", 1.0), vec![point("s", "maps", 32, 20.0, json!("infinity"))]].concat();
     let results = results(&points);
     let chart = chart_of(&points, Kind::ErrorTime);
     let csv = String::from_utf8(PlotFiles::new(&chart, &results).unwrap().csv).unwrap();

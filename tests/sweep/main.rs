@@ -5,14 +5,17 @@ mod common;
 mod kept;
 mod killed;
 mod parallel;
+#[path = "../common/ran.rs"]
+mod ran;
 mod refused;
 
 use std::{
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::Command,
 };
 
+use ran::Ran;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -76,36 +79,6 @@ impl Place {
         self.run(&format!("merge --out {}", out.display())).code(0);
         let text = fs::read_to_string(out.join("points.jsonl")).unwrap();
         text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
-    }
-}
-
-struct Ran {
-    code: Option<i32>,
-    out: String,
-    err: String,
-}
-
-impl From<Output> for Ran {
-    fn from(output: Output) -> Self {
-        let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        assert!(!err.contains("panicked"), "{err}");
-        Self { code: output.status.code(), out, err }
-    }
-}
-
-impl Ran {
-    #[track_caller]
-    fn code(self, code: i32) -> Self {
-        assert_eq!(self.code, Some(code), "{}{}", self.out, self.err);
-        self
-    }
-
-    #[track_caller]
-    fn says(self, words: &[&str]) -> Self {
-        for word in words {
-            assert!(self.err.contains(word), "no `{word}` in: {}", self.err);
-        }
-        self
     }
 }
 

@@ -1,15 +1,14 @@
 //! Where the tracer's photons land, binned exactly: no reconstruction, in the place of a method.
 
 use crate::{
-    gpu::{BufferId, Feature, Gpu, Resource},
+    gpu::{BufferId, Gpu, Resource},
     lab::picture::REGION,
-    methods::{Job, Link, Method, Planned, Provided, Slot},
+    methods::{Job, Method, Planned, Provided, Slot},
     passes::{
         PlanError, eye,
         light::{self, Column},
     },
     renderer::{self, Dump, Frame, Providers, RenderError, Renderer},
-    settings::Setting,
 };
 
 /// Invocations along one side of the dispatch's work groups.
@@ -44,24 +43,12 @@ impl Method for Landings {
         &[Slot::Surface]
     }
 
-    fn needs(&self) -> &'static [Feature] {
-        &[]
-    }
-
-    fn settings(&self) -> &'static [Setting] {
-        &[]
-    }
-
     fn columns(&self) -> &'static [Column] {
         &[Column::Hit, Column::Flux]
     }
 
     fn stages(&self) -> &'static [&'static str] {
         &["budget/bin"]
-    }
-
-    fn chain(&self) -> &'static [Link] {
-        &[]
     }
 
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {

@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::{
     chart::Panel,
     pareto::{Axis, Front, Reading},
-    result::Number,
 };
+use crate::stats::Number;
 
 /// How many values are chosen where none is asked for.
 const CHOSEN: usize = 3;

@@ -18,6 +18,7 @@ use super::{
 use crate::{
     image::{Provenance, rgb_to_png},
     lab::{Cell, Table, table::to_csv},
+    stats::Number,
     whole::{FileError, OutFolder},
 };
 
@@ -135,7 +136,7 @@ fn axes(chart: &Chart) -> [[&'static str; 3]; 2] {
 
 fn cells(estimate: &Estimate) -> [Cell; 3] {
     let cell = |value: f64| Cell::Real(value, decimals(value));
-    let end = |end: Option<super::Number>| end.map_or(Cell::None, |end| cell(end.0));
+    let end = |end: Option<Number>| end.map_or(Cell::None, |end| cell(end.0));
     [cell(estimate.value.0), end(estimate.low), end(estimate.high)]
 }
 

@@ -29,4 +29,4 @@ pub use files::{PlotFiles, csv_table};
 pub use labels::Area;
 pub use read::{ReadError, Results};
 pub use report::PlotReport;
-pub use result::{Budget, Estimate, Number, Point, Published, PublishedRow, Step};
+pub use result::{Budget, Estimate, Point, Published, PublishedRow, Step};

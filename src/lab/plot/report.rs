@@ -8,9 +8,11 @@ use super::{
     equal::{EqualRow, equal_rows},
     files::csv_table,
     read::Results,
-    result::Number,
 };
-use crate::lab::{Cell, Report, Table};
+use crate::{
+    lab::{Cell, Report, Table},
+    stats::Number,
+};
 
 /// Of `nephroid plot`, schema `nephroid.plot/1`.
 #[derive(Debug, Serialize)]

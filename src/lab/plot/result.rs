@@ -2,36 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
-/// A number; JSON has none for what is not finite, which stands there as `"inf"`, `"-inf"` or `"nan"`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Number(pub f64);
-
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let value = Value::deserialize(from)?;
-        let number = match &value {
-            Value::Number(number) => number.as_f64(),
-            Value::String(word) if ["inf", "-inf", "nan"].contains(&word.as_str()) => word.parse().ok(),
-            _ => None,
-        };
-        number.map(Self).ok_or_else(|| {
-            serde::de::Error::custom(format!("expected a number, \"inf\", \"-inf\" or \"nan\", found {value}"))
-        })
-    }
-}
-
-impl Serialize for Number {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        match self.0 {
-            value if value.is_finite() => to.serialize_f64(value),
-            value if value.is_nan() => to.serialize_str("nan"),
-            value => to.serialize_str(if value > 0.0 { "inf" } else { "-inf" }),
-        }
-    }
-}
+use crate::stats::Number;
 
 /// A measured value, with the ends of its interval where it has one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

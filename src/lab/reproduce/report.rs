@@ -1,6 +1,6 @@
 //! `nephroid.reproduce/1`: published beside measured, and the shape of both.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::{
@@ -17,22 +17,18 @@ use crate::{
         timing::{Ratio, Summary},
     },
     metrics::Measure,
+    stats::write_number,
     whole::OutFolder,
 };
-
-/// A number that JSON may not have: then in words.
-fn number<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
-    if value.is_finite() { to.serialize_f64(*value) } else { to.serialize_str(&value.to_string().to_lowercase()) }
-}
 
 /// A value and the interval that it lies in: of times 99 %, of errors 95 %.
 #[derive(Clone, Debug, Serialize)]
 struct Known {
-    #[serde(serialize_with = "number")]
+    #[serde(serialize_with = "write_number")]
     value: f64,
-    #[serde(serialize_with = "number")]
+    #[serde(serialize_with = "write_number")]
     low: f64,
-    #[serde(serialize_with = "number")]
+    #[serde(serialize_with = "write_number")]
     high: f64,
 }
 

@@ -1,4 +1,4 @@
-//! One point as a line of JSON, `nephroid.point/1`. Numbers that JSON lacks are the words `inf`, `-inf` and `nan`.
+//! One point as a line of JSON, `nephroid.point/1`.
 
 use serde_json::{Map, Value, json};
 
@@ -11,6 +11,7 @@ use crate::{
         timing::{Series, Summary},
     },
     metrics::Measure,
+    stats::Number,
     store::Key,
 };
 
@@ -58,8 +59,8 @@ pub(super) fn times(series: &Series) -> [(&'static str, Value); 2] {
 
 fn time(summary: &Summary) -> Value {
     let Summary { median, mad, low, high, samples } = summary;
-    let samples: Vec<Value> = samples.iter().map(|ms| number(*ms)).collect();
-    json!({ "median": number(*median), "mad": number(*mad), "low": number(*low), "high": number(*high), "samples": samples })
+    let samples: Vec<Value> = samples.iter().map(|ms| Number(*ms).into()).collect();
+    json!({ "median": Number(*median), "mad": Number(*mad), "low": Number(*low), "high": Number(*high), "samples": samples })
 }
 
 /// What it is off by.
@@ -75,25 +76,5 @@ pub(super) fn error(comparison: &Comparison) -> Value {
 fn measure(figure: Measure) -> Value {
     let parts = [("value", Some(figure.value)), ("low", figure.low), ("high", figure.high)];
     let known = parts.into_iter().chain([("truth_noise", figure.truth_noise)]);
-    known.filter_map(|(name, part)| Some((name.to_owned(), number(part?)))).collect::<Map<_, _>>().into()
-}
-
-fn number(value: f64) -> Value {
-    match value {
-        value if value.is_finite() => value.into(),
-        value if value.is_nan() => "nan".into(),
-        value if value > 0.0 => "inf".into(),
-        _ => "-inf".into(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::number;
-
-    #[test]
-    fn numbers_that_json_lacks_are_words() {
-        let words = [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1.5].map(|value| number(value).to_string());
-        assert_eq!(words, ["\"inf\"", "\"-inf\"", "\"nan\"", "1.5"]);
-    }
+    known.filter_map(|(name, part)| Some((name.to_owned(), Number(part?).into()))).collect::<Map<_, _>>().into()
 }

@@ -3,11 +3,10 @@
 use glam::DVec3;
 
 use crate::{
-    gpu::{Feature, Format, ImageId, Lifetime, Resource},
-    methods::{Job, Link, Method, Planned, Provided, Slot},
+    gpu::{Format, ImageId, Lifetime, Resource},
+    methods::{Job, Method, Planned, Provided, Slot},
     passes::{PlanError, light::Column},
     renderer::{Dump, RenderError, Renderer},
-    settings::Setting,
 };
 
 /// Invocations along one side of the dispatch's work groups.
@@ -53,24 +52,12 @@ impl Method for Keep {
         &[Slot::Surface]
     }
 
-    fn needs(&self) -> &'static [Feature] {
-        &[]
-    }
-
-    fn settings(&self) -> &'static [Setting] {
-        &[]
-    }
-
     fn columns(&self) -> &'static [Column] {
         &[Column::Hit, Column::Flux, Column::Exit]
     }
 
     fn stages(&self) -> &'static [&'static str] {
         &["tracers/keep"]
-    }
-
-    fn chain(&self) -> &'static [Link] {
-        &[]
     }
 
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
