@@ -104,8 +104,9 @@ pub fn run(args: &BudgetArgs) -> Result<(), Failure> {
     let budget = Budget { fine: args.fine, all: args.all, goal, seconds: args.max_seconds, seed: args.seed };
     let bar = TruthProgress::new(Some(args.max_seconds));
     let chain = budget.chain(&gpu, &job, method, &Store::open(), &mut |progress| {
-        if let Progress::Truth { standing: Some(standing), .. } = progress {
-            bar.at(standing);
+        match progress {
+            Progress::Begun(picture) => bar.say(picture),
+            Progress::Truth(standing) => standing.iter().for_each(|standing| bar.at(standing)),
         }
         if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

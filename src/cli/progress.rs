@@ -93,6 +93,11 @@ impl TruthProgress {
         self.bar.set_message("direct light");
     }
 
+    /// A line beside the bar.
+    pub fn say(&self, line: &str) {
+        self.bar.suspend(|| say(line));
+    }
+
     /// From here on there are photons, of which so many were there before.
     pub fn start(&mut self, before: u64) {
         (self.before, self.started) = (before, Instant::now());

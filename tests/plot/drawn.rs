@@ -34,7 +34,8 @@ fn crowd(count: u64, methods: u64) -> Vec<Value> {
 
 fn hard() -> Vec<Value> {
     let mut points = curve("s", "maps", 1.0);
-    let values = [(5.0, json!(0.0)), (6.0, json!("infinity")), (7.0, json!("nan")), (0.0, json!(0.3)), (0.0, json!("nan"))];
+    let values =
+        [(5.0, json!(0.0)), (6.0, json!("infinity")), (7.0, json!("nan")), (0.0, json!(0.3)), (0.0, json!("nan"))];
     points.extend(values.into_iter().map(|(time, error)| point("s", "lines", 32, time, error)));
     points
 }

@@ -51,17 +51,12 @@ pub struct Budget {
     pub seed: u64,
 }
 
-/// Where a budget is, told before each picture and while a truth is made.
-pub enum Progress {
-    /// A truth of this class; how far it is, once that is known.
-    Truth {
-        /// Its class of paths.
-        paths: PathClass,
-        /// How far.
-        standing: Option<Standing>,
-    },
-    /// A picture of the device.
-    Picture(Shown),
+/// Where a budget is.
+pub enum Progress<'a> {
+    /// A picture of the chain is begun.
+    Begun(&'a str),
+    /// A truth is being made; how far it is, once that is known.
+    Truth(Option<Standing>),
 }
 
 type Watch<'w> = &'w mut dyn FnMut(&Progress) -> ControlFlow<()>;
@@ -102,14 +97,16 @@ impl Budget {
         let mut fine = job.clone();
         fine.settings.set(&renderer::all_settings(), SIDE.key, &self.fine.to_string()).map_err(unfit)?;
         let (mut shots, mut judged) = (Vec::new(), vec![true; job.size[0] as usize * job.size[1] as usize]);
+        let class = light::paths(&job.scene, &job.settings);
         for link in method.chain() {
+            let named = title(link, self.all, class, [self.fine, job.settings.whole(&SIDE)]);
+            if watch(&Progress::Begun(&named)).is_break() {
+                return Err(LabError::Interrupted);
+            }
             let picture = match link.shown {
                 Shown::AllPaths => self.truth(&job, self.all, store, watch)?,
-                Shown::PathClass => self.truth(&job, light::paths(&job.scene, &job.settings), store, watch)?,
+                Shown::PathClass => self.truth(&job, class, store, watch)?,
                 device => {
-                    if watch(&Progress::Picture(device)).is_break() {
-                        return Err(LabError::Interrupted);
-                    }
                     let job = if device == Shown::AsAsked { &job } else { &fine };
                     if device == Shown::Landings {
                         shots.push(Shot::bare(link, landings::landings(gpu, job)?));

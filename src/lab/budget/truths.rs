@@ -28,7 +28,7 @@ pub(super) fn truth(
         return Ok(reference::picture(layers, about));
     }
     let (space, started) = (Space::new(scene), Instant::now());
-    let mut told = |standing: Option<Standing>| watch(&Progress::Truth { paths: task.paths, standing });
+    let mut told = |standing: Option<Standing>| watch(&Progress::Truth(standing));
     let run = Run::watched(&space, &scene.cameras[&task.camera], task, &mut |_| told(None));
     let mut run = run.ok_or(LabError::Interrupted)?;
     let sums = task.sums_key(scene);
