@@ -24,12 +24,12 @@ const REASON: usize = 200;
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file system refuses.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {reason}", path.display())]
     Io {
         /// The file or folder.
         path: PathBuf,
         /// Its reason.
-        source: io::Error,
+        reason: io::Error,
     },
     /// A folder without points.
     #[error("{}: no {POINTS} in this folder: `nephroid sweep merge FILE.toml` makes it", .0.display())]
@@ -93,7 +93,7 @@ impl Results {
         if path.is_dir() && !file.is_file() {
             return Err(ReadError::NoPoints(path.to_path_buf()));
         }
-        let refused = |source| ReadError::Io { path: file.clone(), source };
+        let refused = |reason| ReadError::Io { path: file.clone(), reason };
         let name = file.display().to_string();
         self.sources.push(name.clone());
         if file.extension().is_none_or(|ending| ending != "jsonl") {

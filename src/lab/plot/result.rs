@@ -31,10 +31,11 @@ impl Estimate {
         Self { value: Number(value), low: Some(Number(low)), high: Some(Number(high)) }
     }
 
-    /// Both ends, if it has both and they hold the value.
+    /// Both ends, if it has both. That of an error is where it lies against a truth without noise, which may be wholly
+    /// below the figure itself: it is drawn as far as the figure.
     pub fn interval(&self) -> Option<[f64; 2]> {
         let (low, high) = (self.low?.0, self.high?.0);
-        (low <= self.value.0 && self.value.0 <= high).then_some([low, high])
+        (low <= high && !self.value.0.is_nan()).then(|| [low.min(self.value.0), high.max(self.value.0)])
     }
 
     /// Can it stand on a logarithmic axis?

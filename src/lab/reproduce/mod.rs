@@ -32,7 +32,7 @@ pub struct Extent {
 impl Extent {
     /// Small N and few frames: a minute on a software device.
     pub fn quick() -> Self {
-        Self { quick: true, most_side: 512, rounds: 8, seconds: 40.0, truth_seconds: 10.0, size: [128, 128] }
+        Self { quick: true, most_side: 512, rounds: 8, seconds: 46.0, truth_seconds: 10.0, size: [64, 64] }
     }
 
     /// Every N of the paper that the time and the device's memory allow.

@@ -385,6 +385,7 @@ impl Entry {
         let why = published.figures.iter().map(|figure| columns::runs(published, &figure.column).err());
         let why: Vec<Option<String>> = why.collect();
         let mut missing: Vec<String> = why.iter().flatten().cloned().collect();
+        missing.sort();
         missing.dedup();
         let runs = why.iter().filter(|w| w.is_none()).count();
         let (id, paper) = (published.id.clone(), published.paper.clone());
