@@ -1,10 +1,11 @@
 //! Whether the lab's timing tells what is there, and only that, on this machine as it is.
 //!
-//! Two JSON objects on stdout. `timing/alike`: twenty comparisons of a frame with itself, and how many were called
-//! different; at 99 % one of twenty is one too many in fewer than two of a hundred runs. `timing/tenth`: twenty of a frame
-//! with one that runs a pass of about a tenth of it once more, and how many were called slower.
+//! Two JSON objects on stdout. `timing/alike`: twenty comparisons of a renderer's frame with itself, and how many were
+//! called different; at 99 % one of twenty is one too many in fewer than two of a hundred runs. It is one renderer: two of
+//! one job differ, by where their memory lies, by some 1 % on lavapipe, which is seen. `timing/tenth`: twenty of a frame with
+//! one that runs a pass of about a tenth of it once more, and how many were called slower.
 
-use std::ops::ControlFlow;
+use std::{cell::RefCell, ops::ControlFlow};
 
 use nephroid::{
     gpu::{Gpu, GpuOptions, Sources},
@@ -20,7 +21,7 @@ use nephroid::{
 };
 
 const COMPARISONS: u64 = 20;
-const ROUNDS: u32 = 15;
+const ROUNDS: u32 = 25;
 /// The pass that is repeated: it does the same again.
 const REPEATED: &str = "light/photons";
 /// Share of a frame that the repeated pass should take.
@@ -43,12 +44,11 @@ fn bench() -> Result<(), Failure> {
     let gpu = Gpu::new(&GpuOptions::default())?;
     eprintln!("device: {}", gpu.info().label());
     let job = planted(&gpu)?;
-    let (mut plain, mut again) = (Renderer::new(&gpu, &job)?, Renderer::new(&gpu, &job)?);
-    let alike = compare(&mut plain, &mut again)?;
+    let plain = RefCell::new(Renderer::new(&gpu, &job)?);
+    let alike = compare(&plain, &plain)?;
     let called = alike.iter().filter(|(_, verdict)| *verdict != Verdict::None).count();
     line("timing/alike", &alike, called, "at_most", FALSE_ALARMS, called <= FALSE_ALARMS);
-    let mut slower = repeating(&gpu, &job)?;
-    let tenth = compare(&mut plain, &mut slower)?;
+    let tenth = compare(&plain, &RefCell::new(repeating(&gpu, &job)?))?;
     let called = tenth.iter().filter(|(_, verdict)| *verdict == Verdict::Slower).count();
     line("timing/tenth", &tenth, called, "at_least", FOUND, called >= FOUND);
     Ok(())
@@ -84,16 +84,16 @@ fn repeating(gpu: &Gpu, job: &Job) -> Result<Renderer, Failure> {
     Ok(Renderer::planned(gpu, job, planned, Sources::default())?)
 }
 
-fn variant<'a>(name: &str, renderer: &'a mut Renderer) -> Variant<'a> {
-    let (name, stages) = (name.to_owned(), renderer.stages());
-    Variant { name, stages, frame: Box::new(move || Ok(renderer.frame(&Frame::default())?)) }
+fn variant<'a>(name: &str, renderer: &'a RefCell<Renderer>) -> Variant<'a> {
+    let (name, stages) = (name.to_owned(), renderer.borrow().stages());
+    Variant { name, stages, frame: Box::new(move || Ok(renderer.borrow_mut().frame(&Frame::default())?)) }
 }
 
 /// Ratios and what is said of them.
-fn compare(a: &mut Renderer, b: &mut Renderer) -> Result<Vec<(f64, Verdict)>, LabError> {
+fn compare(a: &RefCell<Renderer>, b: &RefCell<Renderer>) -> Result<Vec<(f64, Verdict)>, LabError> {
     let mut found = Vec::new();
     for seed in 0..COMPARISONS {
-        let mut both = [variant("plain", &mut *a), variant("other", &mut *b)];
+        let mut both = [variant("plain", a), variant("other", b)];
         let rounds = Rounds { rounds: ROUNDS, most_warmup: 20, seed };
         let timed = rounds.run(&mut both, &mut |_| ControlFlow::Continue(()))?;
         let ratio = timed.span_ratio(0, 1);
