@@ -122,8 +122,8 @@ pub fn all_settings() -> Vec<Setting> {
 }
 
 /// What a method needs and the device lacks.
-pub fn lacks(method: &dyn Method, features: &[Feature]) -> Vec<&'static str> {
-    method.needs().iter().filter(|f| !features.contains(f)).map(|f| f.name()).collect()
+pub fn lacks(method: &dyn Method, settings: &Settings, features: &[Feature]) -> Vec<&'static str> {
+    method.needs(settings).iter().filter(|f| !features.contains(f)).map(|f| f.name()).collect()
 }
 
 impl Renderer {
@@ -157,7 +157,7 @@ impl Renderer {
         old: Option<&Program>,
     ) -> Result<Self, RenderError> {
         for method in job.providers.methods() {
-            let lacks = lacks(method, &gpu.info().features);
+            let lacks = lacks(method, &job.settings, &gpu.info().features);
             if !lacks.is_empty() {
                 let device = gpu.info().label();
                 return Err(RenderError::Lacks { method: method.name(), device, lacks: lacks.join(", ") });

@@ -210,6 +210,11 @@ impl Settings {
         self.set.get(setting.key).map_or(setting.default, String::as_str)
     }
 
+    /// Whether it was set, be it to its default.
+    pub fn is_set(&self, setting: Setting) -> bool {
+        self.set.contains_key(setting.key())
+    }
+
     /// The value of any setting, as text.
     pub fn text(&self, setting: Setting) -> String {
         self.set.get(setting.key()).cloned().unwrap_or_else(|| setting.default_text())

@@ -20,7 +20,6 @@ fn gathered(gpu: &nephroid::gpu::Gpu, scene: &str, gather: &str, copy: &str, sid
     let set = [
         ("maps.gather", gather),
         ("maps.copy", copy),
-        ("maps.sum", "blend"),
         ("light.side", side),
         ("maps.side", "64"),
     ];

@@ -43,13 +43,9 @@ fn passes_wait_for_each_other_and_are_timed() {
     for _ in 0..3 {
         plan.pass("test/fill").target(picture, 0, None, Blend::Add).screen("fill.frag");
     }
-    plan.passes[0].work = match plan.passes[0].work.clone() {
-        nephroid::gpu::Work::Raster { shaders, mut targets, depth, topology, draws } => {
-            targets[0].clear = Some([0.0; 4]);
-            nephroid::gpu::Work::Raster { shaders, targets, depth, topology, draws }
-        }
-        other => other,
-    };
+    if let nephroid::gpu::Work::Raster { targets, .. } = &mut plan.passes[0].work {
+        targets[0].clear = Some([0.0; 4]);
+    }
     plan.pass("test/sum").fetch("picture", picture).write("sums", sums).dispatch("sum.comp", [1, 1, 1], 64);
     let mut program = prepare(&gpu, plan, &sources, None).unwrap();
     for _ in 0..3 {

@@ -142,27 +142,27 @@ const EXACT: f64 = 1e-5;
 const BLENDED: f64 = 1e-4;
 
 /// Share by which the map's flux is off, all of it in a few texels about the focus.
-fn off_in_the_focus(side: &str, sum: &str) -> f64 {
-    let set = [("light.side", side), ("maps.side", "512"), ("eye.samples", "1"), ("maps.sum", sum)];
+fn off_in_the_focus(side: &str, traverse: &str) -> f64 {
+    let set = [("light.side", side), ("maps.side", "512"), ("eye.samples", "1"), ("maps.traverse", traverse)];
     let ratio = picture(&gpu(), &job_of(scene("paraboloid", &[]), &set, "region", [16; 2])).energy.ratio;
     let off = ratio.expect("photons arrive") - 1.0;
-    println!("{side}² photons, {sum}: {off:+.2e}");
+    println!("{side}² photons, {traverse}: {off:+.2e}");
     off
 }
 
 #[test]
 fn many_photons_in_a_texel_sum_exactly() {
     for side in ["256", "512"] {
-        assert!(off_in_the_focus(side, "fixed").abs() <= EXACT);
+        assert!(off_in_the_focus(side, "compute").abs() <= EXACT);
     }
-    assert!(off_in_the_focus("512", "blend").abs() > BLENDED, "or nothing is shown by the above");
+    assert!(off_in_the_focus("512", "fetch").abs() > BLENDED, "or nothing is shown by the above");
 }
 
 #[test]
 #[ignore = "16 million photons take 0.6 GB on the device, and a minute on two cores"]
 fn sixteen_million_photons_in_a_texel_sum_exactly() {
     for side in ["1024", "2048", "4096"] {
-        assert!(off_in_the_focus(side, "fixed").abs() <= EXACT);
+        assert!(off_in_the_focus(side, "compute").abs() <= EXACT);
     }
 }
 

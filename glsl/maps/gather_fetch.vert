@@ -3,32 +3,21 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require
 
-// Gather `fetch` (Wyman 2008, section 4: no copy, no vertex data): an instanced draw over the photons, an instance a
-// row, layer after layer. Each becomes, in its receiver's layer of the map, a point splat of fixed size whose weights sum
-// to one over the texels it touches.
+// Traverse `fetch` (Wyman 2008, section 4: no copy, no vertex data): an instanced draw over the photons, an instance a
+// row, layer after layer. Each becomes, in its receiver's layer of the map, a point splat whose weights sum to one over the
+// texels it touches.
 
-#include "maps/photon_splat.glsl"
-#include "maps/photons.glsl"
-
-layout(push_constant, scalar) uniform Push {
-    int side;       // texels of the map
-    float diameter; // texels
-    uint light;
-} push;
-
-layout(location = 0) flat out vec3 splat_flux;   // W, already divided by the sum of the weights
-layout(location = 1) flat out vec2 splat_centre; // texels
+#include "maps/varying.glsl"
+#include "maps/splat_point.glsl"
 
 void main() {
-    int rows = textureSize(photons_hit, 0).y;
-    Splat s;
+    int rows = photons_side();
     ivec2 texel = ivec2(gl_VertexIndex, gl_InstanceIndex % rows);
     int layer = gl_InstanceIndex / rows;
-    bool takes =
-        splat_of(hit_at(texel, layer), flux_at(texel, layer), push.light, push.side, push.diameter, s);
-    gl_Position = takes ? vec4(2.0 * s.centre / float(push.side) - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0); // culled
-    gl_PointSize = takes ? splat_diameter(push.diameter) : 1.0;
-    gl_Layer = s.layer;
-    splat_flux = s.flux;
-    splat_centre = s.centre;
+    vec4 flux = flux_at(texel, layer);
+    Landed l;
+    Splat s = NO_SPLAT;
+    bool takes = land(hit_at(texel, layer), flux.w, l);
+    if (takes) takes = splat_of(l, photon_flux(flux.rgb), splat_size(l, texel, 0, layer), s);
+    emit_splat(s, takes);
 }

@@ -1,4 +1,4 @@
-// From a photon to its splat: where in which layer of the map, and with which flux. All ways to gather share it.
+// From a photon to its splat: where in which layer of the map, how large, and with which flux. All ways to gather share it.
 #ifndef PHOTON_SPLAT_GLSL
 #define PHOTON_SPLAT_GLSL
 
@@ -6,25 +6,76 @@
 #include "shared/photon.glsl"
 #include "shared/splat.glsl"
 
-struct Splat {
-    vec3 flux;   // W, already divided by the sum of the weights
-    vec2 centre; // texels
-    int layer;
+layout(push_constant, scalar) uniform Push {
+    int side;        // texels of the map
+    float diameter;  // texels: of fixed splats, and of varying ones without a neighbour
+    float threshold; // texels: the diameter beyond which a splat goes to a smaller level
+    uint light;
+} push;
+
+// A photon in its map.
+struct Landed {
+    vec3 p;
+    vec3 n;
+    uint receiver;
+    vec2 xy01;
+    int map;
 };
 
+struct Splat {
+    vec3 flux;      // W, already divided by the sum of the weights
+    vec2 centre;    // texels of its level
+    float diameter; // texels of its level
+    int side;       // texels of its level
+    int layer;      // of the image
+};
+
+const Splat NO_SPLAT = Splat(vec3(0.0), vec2(0.0), 1.0, 0, 0);
+
 // From its columns. False if no map takes the photon, or there is none.
-bool splat_of(vec4 hit, vec4 flux, uint light, int side, float diameter, out Splat s) {
-    s = Splat(vec3(0.0), vec2(0.0), 0);
+bool land(vec4 hit, float normal, out Landed l) {
+    l = Landed(hit.xyz, vec3(0.0), 0u, vec2(0.0), -1);
     if (hit.w == 0.0) return false;
-    vec2 xy01;
-    uint receiver = uint(hit.w) - 1u;
-    int layer = map_layer(hit.xyz, photon_normal(flux.w), receiver, light, xy01);
-    if (layer < 0) return false;
-    vec2 p = vec2(splat_snap(xy01.x * float(side)), splat_snap(xy01.y * float(side)));
+    l.n = photon_normal(normal);
+    l.receiver = uint(hit.w) - 1u;
+    l.map = map_layer(l.p, l.n, l.receiver, push.light, l.xy01);
+    return l.map >= 0;
+}
+
+#ifdef VARYING
+const int LEVELS = 4; // of the paper: what is larger is dropped
+
+// As printed (trunc), or as the text means (ceil: no splat larger than the threshold in any level).
+int level_of(float diameter) {
+    float octaves = log2(max(1.0, diameter / push.threshold));
+#ifdef LEVEL_CEIL
+    octaves = ceil(octaves);
+#endif
+    return int(min(octaves, 64.0));
+}
+#endif
+
+// The splat of a flux (W) about where the photon landed, of a diameter in texels of the map. False if it is dropped.
+bool splat_of(Landed l, vec3 flux, float diameter, out Splat s) {
+    s = NO_SPLAT;
+    float scale = 1.0;
+    int layer = l.map;
+#ifdef VARYING
+    int level = level_of(diameter);
+    if (level >= LEVELS) return false;
+#ifdef MULTIRES
+    scale = exp2(-float(level));
+    layer = l.map * LEVELS + level;
+#endif
+#endif
+    float reach = scale * float(push.side); // of the level's corner of the layer
+    int side = int(ceil(reach));
+    vec2 p = vec2(splat_snap(l.xy01.x * reach), splat_snap(l.xy01.y * reach));
     p = min(p, vec2(float(side) - 1.0 / SPLAT_GRID)); // the centre stays inside: points are clipped by it
-    float norm = splat_norm(p.x, diameter, side) * splat_norm(p.y, diameter, side);
+    float d = splat_diameter(scale * diameter);
+    float norm = splat_norm(p.x, d, side) * splat_norm(p.y, d, side);
     if (!(norm > 0.0)) return false;
-    s = Splat(photon_flux(flux.rgb) / norm, p, layer);
+    s = Splat(flux / norm, p, d, side, layer);
     return true;
 }
 

@@ -20,4 +20,8 @@ vec4 flux_at(ivec2 texel, int layer) {
     return texelFetch(photons_flux, PHOTON_PLACE(texel, layer), 0);
 }
 
+int photons_side() {
+    return textureSize(photons_hit, 0).x;
+}
+
 #endif

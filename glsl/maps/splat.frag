@@ -5,18 +5,15 @@
 
 #include "shared/splat.glsl"
 
-layout(push_constant) uniform Push {
-    int side;
-    float diameter;
-    uint light;
-} push;
-
-layout(location = 0) flat in vec3 splat_flux;
-layout(location = 1) flat in vec2 splat_centre;
+layout(location = 0) flat in vec4 splat_flux;   // W, already divided by the sum of the weights; diameter
+layout(location = 1) flat in vec4 splat_centre; // texels of its level; the level's side; layer
 layout(location = 0) out vec4 deposited;
 
 void main() {
-    float weight = splat_weight(gl_FragCoord.x, splat_centre.x, push.diameter) *
-                   splat_weight(gl_FragCoord.y, splat_centre.y, push.diameter);
-    deposited = vec4(weight * splat_flux, 0.0);
+#ifdef MULTIRES
+    if (any(greaterThan(gl_FragCoord.xy, splat_centre.zz))) discard; // beyond its level's corner
+#endif
+    float weight = splat_weight(gl_FragCoord.x, splat_centre.x, splat_flux.w) *
+                   splat_weight(gl_FragCoord.y, splat_centre.y, splat_flux.w);
+    deposited = vec4(weight * splat_flux.rgb, 0.0);
 }

@@ -9,14 +9,29 @@ vec3 map_texel(ivec3 at, ivec2 size) {
 }
 
 // Bilinear, in full precision (samplers keep 8 bits of the fraction). The integral over the map is its sum.
-vec3 map_flux(vec2 xy01, int layer, ivec2 size) {
-    vec2 at = xy01 * vec2(size) - 0.5;
+vec3 map_flux(vec2 at01, int layer, vec2 reach) {
+    ivec2 size = ivec2(ceil(reach));
+    vec2 at = at01 * reach - 0.5;
     ivec2 low = ivec2(floor(at));
     vec2 f = at - vec2(low);
     vec3 top = mix(map_texel(ivec3(low, layer), size), map_texel(ivec3(low + ivec2(1, 0), layer), size), f.x);
     vec3 bottom =
         mix(map_texel(ivec3(low + ivec2(0, 1), layer), size), map_texel(ivec3(low + ivec2(1, 1), layer), size), f.x);
     return mix(top, bottom, f.y);
+}
+
+// W a texel of the whole map. A texel of level i covers 4^i of them (Wyman 2008, equation 3).
+vec3 texel_flux(vec2 xy01, int map, ivec2 size) {
+#ifdef LEVELS
+    vec3 sum = vec3(0.0);
+    for (int level = 0; level < LEVELS; level++) {
+        float scale = exp2(-float(level));
+        sum += scale * scale * map_flux(xy01, map * LEVELS + level, scale * vec2(size));
+    }
+    return sum;
+#else
+    return map_flux(xy01, map, vec2(size));
+#endif
 }
 
 // Irradiance (W/m^2) at p on the side of unit geometric normal n: flux over the texel's footprint on the receiver.
@@ -31,7 +46,7 @@ vec3 surface_irradiance(vec3 p, vec3 n, uint receiver, vec2 uv) {
         if (!map_project(v, p, n, xy01)) continue;
         // What lands outside is counted as outside, and not in the map.
         if (any(lessThan(xy01, vec2(0.0))) || any(greaterThan(xy01, vec2(1.0)))) continue;
-        sum += map_flux(xy01, layer, size) / view_texel_area(v, size, xy01, p, n);
+        sum += texel_flux(xy01, layer, size) / view_texel_area(v, size, xy01, p, n);
     }
     return sum;
 }

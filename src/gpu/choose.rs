@@ -22,7 +22,7 @@ pub enum DeviceChoice {
 /// What a method may need beyond Vulkan 1.3, and a device may lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
-    /// Geometry shaders (`geometryShader`).
+    /// Geometry shaders that say how large points are.
     GeometryShader,
     /// Transform feedback (`VK_EXT_transform_feedback`).
     TransformFeedback,
@@ -40,7 +40,7 @@ impl Feature {
     /// The name Vulkan gives it.
     pub fn name(self) -> &'static str {
         match self {
-            Self::GeometryShader => "geometryShader",
+            Self::GeometryShader => "geometryShader with shaderTessellationAndGeometryPointSize",
             Self::TransformFeedback => "VK_EXT_transform_feedback",
             Self::Float32Blend => "blending on R32G32B32A32_SFLOAT",
             Self::LargePoints => "largePoints",
@@ -163,7 +163,8 @@ fn describe(instance: &ash::Instance, index: usize, physical: vk::PhysicalDevice
             optional.push(feature)
         }
     };
-    offer(core.geometry_shader == vk::TRUE, Feature::GeometryShader);
+    let sized_points = core.shader_tessellation_and_geometry_point_size == vk::TRUE;
+    offer(core.geometry_shader == vk::TRUE && sized_points, Feature::GeometryShader);
     offer(stream.transform_feedback == vk::TRUE, Feature::TransformFeedback);
     offer(
         blend.optimal_tiling_features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND),

@@ -65,6 +65,7 @@ pub struct Gpu(pub(super) Arc<Shared>);
 pub(super) struct Shared {
     pub device: ash::Device,
     pub push: khr::push_descriptor::Device,
+    feedback: Option<ext::transform_feedback::Device>,
     pub labels: Option<ext::debug_utils::Device>,
     pub queue: vk::Queue,
     pub pool: vk::CommandPool,
@@ -184,6 +185,10 @@ impl Gpu {
         std::mem::forget(guard);
         Ok(Self(Arc::new(Shared {
             push: khr::push_descriptor::Device::new(&instance.handle, &device),
+            feedback: info
+                .features
+                .contains(&Feature::TransformFeedback)
+                .then(|| ext::transform_feedback::Device::new(&instance.handle, &device)),
             labels: instance.labels.then(|| ext::debug_utils::Device::new(&instance.handle, &device)),
             device,
             queue,
@@ -256,6 +261,7 @@ fn create_device(instance: &ash::Instance, info: &DeviceInfo, shows: bool) -> Re
     }
     let core = vk::PhysicalDeviceFeatures::default()
         .geometry_shader(has(Feature::GeometryShader))
+        .shader_tessellation_and_geometry_point_size(has(Feature::GeometryShader))
         .large_points(has(Feature::LargePoints))
         .occlusion_query_precise(has(Feature::PreciseOcclusion))
         .pipeline_statistics_query(has(Feature::Statistics));
@@ -280,6 +286,11 @@ fn create_device(instance: &ash::Instance, info: &DeviceInfo, shows: bool) -> Re
 impl Shared {
     pub fn allocator(&self) -> MutexGuard<'_, memory::Allocator> {
         self.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Transform feedback, which every method that streams declares it needs.
+    pub fn feedback(&self) -> &ext::transform_feedback::DeviceFn {
+        self.feedback.as_ref().expect("a plan that streams runs where the device has transform feedback").fp()
     }
 
     /// Pipeline stages that barriers may name on this device.

@@ -13,6 +13,7 @@ use std::{
 
 use super::{
     access::History,
+    choose::Feature,
     device::{Gpu, Shared},
     error::{GpuError, Named},
 };
@@ -26,6 +27,8 @@ pub enum Format {
     Rgba16f,
     /// Two indices and two float32 bit patterns.
     Rgba32u,
+    /// Two words.
+    Rg32u,
     /// One float32.
     R32f,
     /// Float32 depth.
@@ -37,7 +40,7 @@ impl Format {
     pub fn bytes(self) -> u64 {
         match self {
             Self::Rgba32f | Self::Rgba32u => 16,
-            Self::Rgba16f => 8,
+            Self::Rgba16f | Self::Rg32u => 8,
             Self::R32f | Self::Depth32f => 4,
         }
     }
@@ -48,6 +51,7 @@ impl Format {
             Self::Rgba32f => "rgba32f",
             Self::Rgba16f => "rgba16f",
             Self::Rgba32u => "rgba32ui",
+            Self::Rg32u => "rg32ui",
             Self::R32f => "r32f",
             Self::Depth32f => "depth32f",
         }
@@ -57,6 +61,7 @@ impl Format {
     pub fn channels(self) -> u32 {
         match self {
             Self::Rgba32f | Self::Rgba16f | Self::Rgba32u => 4,
+            Self::Rg32u => 2,
             Self::R32f | Self::Depth32f => 1,
         }
     }
@@ -66,6 +71,7 @@ impl Format {
             Self::Rgba32f => vk::Format::R32G32B32A32_SFLOAT,
             Self::Rgba16f => vk::Format::R16G16B16A16_SFLOAT,
             Self::Rgba32u => vk::Format::R32G32B32A32_UINT,
+            Self::Rg32u => vk::Format::R32G32_UINT,
             Self::R32f => vk::Format::R32_SFLOAT,
             Self::Depth32f => vk::Format::D32_SFLOAT,
         }
@@ -144,6 +150,10 @@ impl Buffer {
             | vk::BufferUsageFlags::TRANSFER_DST
             | vk::BufferUsageFlags::INDIRECT_BUFFER
             | vk::BufferUsageFlags::VERTEX_BUFFER;
+        if shared.info.features.contains(&Feature::TransformFeedback) {
+            usage |= vk::BufferUsageFlags::TRANSFORM_FEEDBACK_BUFFER_EXT
+                | vk::BufferUsageFlags::TRANSFORM_FEEDBACK_COUNTER_BUFFER_EXT;
+        }
         if location != MemoryLocation::GpuOnly {
             usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
         }

@@ -34,6 +34,8 @@ pub(super) struct RasterState {
     pub topology: Topology,
     /// Vertex attributes by location, each from a binding of its own.
     pub attributes: Vec<Format>,
+    /// Whether the geometry shader streams out; without a target nothing is rasterised then.
+    pub streams: bool,
 }
 
 /// One compiled stage.
@@ -213,7 +215,9 @@ impl Shared {
             Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
         });
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let nothing_drawn = state.streams && state.colors.is_empty() && !state.depth;
+        let raster =
+            vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).rasterizer_discard_enable(nothing_drawn);
         let samples =
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()

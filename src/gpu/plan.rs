@@ -148,6 +148,15 @@ pub struct Draw {
     pub first_instance: u32,
 }
 
+/// Vertices that a geometry shader streams out (transform feedback), from the buffer's start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stream {
+    /// Where they go.
+    pub vertices: BufferId,
+    /// Four bytes: how many bytes were written.
+    pub counter: BufferId,
+}
+
 /// What a pass runs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Work {
@@ -177,6 +186,10 @@ pub enum Work {
         topology: Topology,
         /// The draws.
         draws: Vec<Draw>,
+        /// A stream to draw after them: its vertices are attribute 0.
+        drawn: Option<Stream>,
+        /// What is streamed out.
+        streamed: Option<Stream>,
     },
 }
 
@@ -266,6 +279,7 @@ impl Plan {
             },
             targets: Vec::new(),
             depth: None,
+            streamed: None,
             plan: self,
         }
     }
@@ -306,6 +320,7 @@ pub struct PassBuilder<'p> {
     pass: PassDecl,
     targets: Vec<Target>,
     depth: Option<Depth>,
+    streamed: Option<Stream>,
 }
 
 impl PassBuilder<'_> {
@@ -379,6 +394,12 @@ impl PassBuilder<'_> {
         self
     }
 
+    /// Streams out what the geometry shader emits.
+    pub fn stream(mut self, to: Stream) -> Self {
+        self.streamed = Some(to);
+        self
+    }
+
     /// Push constants.
     pub fn push<T: bytemuck::NoUninit>(mut self, value: &T) -> Self {
         self.pass.push = bytemuck::bytes_of(value).to_vec();
@@ -417,13 +438,25 @@ impl PassBuilder<'_> {
     }
 
     /// Ends the sentence with draws.
-    pub fn draw(mut self, shaders: &[&str], topology: Topology, draws: Vec<Draw>) {
+    pub fn draw(self, shaders: &[&str], topology: Topology, draws: Vec<Draw>) {
+        self.raster(shaders, topology, draws, None);
+    }
+
+    /// Ends the sentence with a draw of what was streamed out before, as many points as the counter says: attribute 0,
+    /// of that format.
+    pub fn draw_stream(self, shaders: &[&str], from: Stream, format: Format) {
+        self.attribute(from.vertices, format).raster(shaders, Topology::Points, Vec::new(), Some(from));
+    }
+
+    fn raster(mut self, shaders: &[&str], topology: Topology, draws: Vec<Draw>, drawn: Option<Stream>) {
         self.pass.work = Work::Raster {
             shaders: shaders.iter().map(|s| s.to_string()).collect(),
             targets: self.targets,
             depth: self.depth,
             topology,
             draws,
+            drawn,
+            streamed: self.streamed,
         };
         self.plan.passes.push(self.pass);
     }

@@ -347,10 +347,11 @@ fn prepare_pass(
     let (files, raster) = match &pass.work {
         Work::Copy { .. } => return Ok(None),
         Work::Compute { shader, .. } => (std::slice::from_ref(shader), None),
-        Work::Raster { shaders, targets, depth, topology, .. } => {
+        Work::Raster { shaders, targets, depth, topology, streamed, .. } => {
             let colors = targets.iter().map(|t| (plan.images[t.image.0].format.vk(), t.blend)).collect();
             let attributes = pass.attributes.iter().map(|&(_, format)| format).collect();
-            let state = RasterState { colors, depth: depth.is_some(), topology: *topology, attributes };
+            let (depth, streams) = (depth.is_some(), streamed.is_some());
+            let state = RasterState { colors, depth, topology: *topology, attributes, streams };
             (shaders.as_slice(), Some(state))
         }
     };

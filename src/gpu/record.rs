@@ -8,7 +8,7 @@ use super::{
     device::Shared,
     memory::{Buffer, Image},
     pipeline::{Pipeline, descriptor_type},
-    plan::{BufferId, Draw, ImageId, PassDecl, Resource, Target, Work},
+    plan::{BufferId, ImageId, PassDecl, Resource, Stream, Work},
     program::Program,
     reflect::BindingKind,
     timer::Timer,
@@ -114,7 +114,7 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
         match &pass.work {
             Work::Compute { groups, .. } => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
             Work::Copy { copies } => copies.iter().for_each(|&copied| copy(program, copied)),
-            Work::Raster { targets, draws, .. } => draw(program, pass, targets, draws),
+            Work::Raster { .. } => draw(program, pass),
         }
         if counts {
             timer.end_counting(commands, slot);
@@ -178,7 +178,12 @@ fn resource_barriers(program: &Program, pass: &PassDecl) {
             buffer(to.0, Access::CopyWrite);
         }
     }
-    if let Work::Raster { targets, depth, .. } = &pass.work {
+    if let Work::Raster { targets, depth, drawn, streamed, .. } = &pass.work {
+        drawn.iter().for_each(|s| buffer(s.counter.0, Access::Indirect));
+        if let Some(stream) = streamed {
+            buffer(stream.vertices.0, Access::StreamWrite);
+            buffer(stream.counter.0, Access::StreamCounterWrite);
+        }
         targets.iter().for_each(|t| image(t.image.0, Access::Color));
         depth.iter().for_each(|d| image(d.image.0, Access::Depth));
     }
@@ -245,10 +250,25 @@ unsafe fn copy(program: &Program, (from, to): (ImageId, BufferId)) {
     }
 }
 
+/// Streams to the start of a buffer from here on.
+///
+/// # Safety
+/// The command buffer is recording, within rendering, with a pipeline bound that streams; barriers came before.
+unsafe fn begin_stream(program: &Program, stream: &Stream) {
+    let (commands, feedback) = (program.commands(), program.shared.feedback());
+    let (vertices, offset) = (&program.buffers[stream.vertices.0], 0);
+    // SAFETY: promised by the caller; without counters the stream begins at the buffer's start.
+    unsafe {
+        let bind = feedback.cmd_bind_transform_feedback_buffers_ext;
+        bind(commands, 0, 1, &vertices.handle, &offset, &vertices.bytes);
+        (feedback.cmd_begin_transform_feedback_ext)(commands, 0, 0, std::ptr::null(), std::ptr::null());
+    }
+}
+
 /// # Safety
 /// The command buffer is recording, outside rendering, with the pass's pipeline bound.
-unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[Draw]) {
-    let Work::Raster { depth, .. } = &pass.work else { return };
+unsafe fn draw(program: &Program, pass: &PassDecl) {
+    let Work::Raster { targets, depth, draws, drawn, streamed, .. } = &pass.work else { return };
     let load = |clears: bool| if clears { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
     let colors: Vec<_> = targets
         .iter()
@@ -271,7 +291,8 @@ unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[
             .clear_value(vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 1.0, stencil: 0 } })
     });
     let first = targets.first().map(|t| t.image).or(depth.as_ref().map(|d| d.image));
-    let Some([width, height]) = first.map(|id| program.images[id.0].extent) else { return };
+    // What is streamed out alone is drawn to nothing.
+    let [width, height] = first.map_or([1, 1], |id| program.images[id.0].extent);
     let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width, height } };
     let layered = targets.iter().filter(|t| t.layer.is_none()).map(|t| program.images[t.image.0].layers);
     let layers = layered.min().unwrap_or(1);
@@ -289,8 +310,21 @@ unsafe fn draw(program: &Program, pass: &PassDecl, targets: &[Target], draws: &[
         for (at, (buffer, _)) in (0..).zip(&pass.attributes) {
             device.cmd_bind_vertex_buffers(commands, at, &[program.buffers[buffer.0].handle], &[0]);
         }
+        if let Some(stream) = streamed {
+            begin_stream(program, stream);
+        }
         for d in draws {
             device.cmd_draw(commands, d.vertices, d.instances, d.first_vertex, d.first_instance);
+        }
+        if let Some((stream, (_, format))) = drawn.as_ref().zip(pass.attributes.first()) {
+            let counter = program.buffers[stream.counter.0].handle;
+            let draw = program.shared.feedback().cmd_draw_indirect_byte_count_ext;
+            draw(commands, 1, 0, counter, 0, 0, format.bytes() as u32);
+        }
+        if let Some(stream) = streamed {
+            let counters = [program.buffers[stream.counter.0].handle];
+            let end = program.shared.feedback().cmd_end_transform_feedback_ext;
+            end(commands, 0, 1, counters.as_ptr(), std::ptr::null());
         }
         device.cmd_end_rendering(commands);
     }

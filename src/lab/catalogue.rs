@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Cell, Report, Table};
-use crate::{methods, renderer, scene::Scene, settings::Setting};
+use crate::{methods, renderer, scene::Scene, settings::{Setting, Settings}};
 
 /// Every method and every setting.
 #[derive(Debug, Serialize)]
@@ -39,7 +39,7 @@ impl MethodsReport {
             title: m.title(),
             paper: m.paper(),
             slots: m.slots().iter().map(|s| s.name()).collect(),
-            needs: m.needs().iter().map(|f| f.name()).collect(),
+            needs: m.needs(&Settings::default()).iter().map(|f| f.name()).collect(),
         };
         let setting = |s: Setting| SettingRow {
             setting: s.key(),

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Cell, Report, Table};
-use crate::{gpu::DeviceInfo, methods, renderer};
+use crate::{gpu::DeviceInfo, methods, renderer, settings::Settings};
 
 /// A device as reports and results name it.
 #[derive(Clone, Debug, Serialize)]
@@ -82,7 +82,7 @@ impl DevicesReport {
 
 impl MethodOn {
     pub fn new(method: &dyn methods::Method, info: &DeviceInfo) -> Self {
-        let lacks = renderer::lacks(method, &info.features);
+        let lacks = renderer::lacks(method, &Settings::default(), &info.features);
         Self { name: method.name(), runs: lacks.is_empty() && info.missing.is_empty(), lacks }
     }
 

@@ -100,10 +100,11 @@ impl PassRow {
                 let [width, height] = copies.first().map_or([0, 0], |(from, _)| plan.image_extent(*from));
                 ("copy", [].as_slice(), [width, height, 1], 0, [].as_slice())
             }
-            Work::Raster { shaders, targets, depth, draws, .. } => {
+            Work::Raster { shaders, targets, depth, draws, drawn, .. } => {
                 let target = targets.first().map(|t| t.image).or(depth.as_ref().map(|d| d.image));
                 let [width, height] = target.map_or([0, 0], |t| plan.image_extent(t));
-                ("raster", shaders.as_slice(), [width, height, 1], 0, draws.as_slice())
+                let kind = if drawn.is_some() { "stream" } else { "raster" };
+                (kind, shaders.as_slice(), [width, height, 1], 0, draws.as_slice())
             }
         };
         Self {
@@ -124,6 +125,7 @@ impl PassRow {
         match (self.kind, self.draws) {
             ("compute", _) => format!("{x}x{y}x{z} groups of {}", self.local),
             ("copy", _) => format!("{x}x{y} to buffers"),
+            ("stream", _) => format!("{x}x{y}, 1 draw of the stream"),
             (_, 1) => format!("{x}x{y}, 1 draw of {} vertices", self.vertices),
             (_, n) => format!("{x}x{y}, {n} draws of {} vertices", self.vertices),
         }

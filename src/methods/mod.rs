@@ -114,14 +114,19 @@ pub trait Method: Sync {
     fn paper(&self) -> &'static str;
     /// What it fills.
     fn slots(&self) -> &'static [Slot];
-    /// What it needs of a device beyond what every frame does: nothing, if it does not say.
-    fn needs(&self) -> &'static [Feature] {
-        &[]
+    /// What it needs of a device, as set, beyond what every frame does: nothing, if it does not say.
+    fn needs(&self, _: &Settings) -> Vec<Feature> {
+        Vec::new()
     }
 
     /// Its settings.
     fn settings(&self) -> &'static [Setting] {
         &[]
+    }
+
+    /// Settings that another one decides, and their values then.
+    fn decided(&self, _: &Settings) -> Vec<(&'static str, String)> {
+        Vec::new()
     }
 
     /// The photon columns it reads.

@@ -141,7 +141,7 @@ impl Live {
         let at = methods::ALL.iter().position(|m| Some(m.name()) == now);
         let mut said = Vec::new();
         for method in methods::ALL.iter().skip(at.map_or(0, |at| at + 1)) {
-            let lacks = renderer::lacks(*method, &features);
+            let lacks = renderer::lacks(*method, &self.job.settings, &features);
             let job = Job { providers: Providers::of(*method), ..self.job.clone() };
             match renderer::plan(&job) {
                 Ok(_) if lacks.is_empty() => return self.replan(job).map(|()| said),

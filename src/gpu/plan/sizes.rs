@@ -18,7 +18,10 @@ impl Plan {
         let drawn = match &pass.work {
             Work::Compute { .. } => 0,
             Work::Copy { copies } => copies.iter().map(|(_, to)| self.buffers[to.0].bytes).sum(),
-            Work::Raster { targets, .. } => targets.iter().map(|t| self.images[t.image.0].bytes()).sum(),
+            Work::Raster { targets, streamed, .. } => {
+                let streamed = streamed.iter().map(|s| self.buffers[s.vertices.0].bytes);
+                targets.iter().map(|t| self.images[t.image.0].bytes()).chain(streamed).sum()
+            }
         };
         stored.sum::<u64>() + drawn
     }

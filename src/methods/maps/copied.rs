@@ -1,9 +1,9 @@
-//! Gather `copy` (Wyman and Davis 2006): the photon image becomes a vertex buffer, from which N² points are drawn.
+//! Traverse `copy` (Wyman and Davis 2006): the photon image becomes a vertex buffer, from which N² points are drawn.
 //!
 //! Where both sides have the same bits the device copies (`vkCmdCopyImageToBuffer`). It never converts, and a blit
 //! converts between images only: from 16 to 32 bits a compute pass reads the image and writes the buffer, once.
 
-use super::{Column, GATHER, Job};
+use super::{Axes, Column, Job};
 use crate::{
     gpu::{BufferId, Format, Lifetime},
     settings::{Choice, Settings},
@@ -16,12 +16,12 @@ pub static COPY: Choice = Choice {
     key: "maps.copy",
     default: "32-32",
     words: &["32-32", "16-32", "16-16"],
-    doc: "with maps.gather = copy, bits of a photon image's channel and of the vertex buffer's; 16-32 converts, as in 2006",
+    doc: "with maps.traverse = copy, bits of a photon image's channel and of the vertex buffer's; 16-32 converts, as in 2006",
 };
 
 /// Whether photons are traced into float16.
 pub fn halves(settings: &Settings) -> bool {
-    settings.choice(&GATHER) == "copy" && settings.choice(&COPY) != "32-32"
+    Axes::of(settings).traverse == "copy" && settings.choice(&COPY) != "32-32"
 }
 
 /// The photons as vertices: two attributes, in the order of the photon image's layers and rows.
@@ -35,7 +35,7 @@ pub struct Vertices {
 impl Vertices {
     /// The buffers, which all views share; `None` where nothing is copied.
     pub fn plan(job: &mut Job<'_>) -> Option<Self> {
-        if job.settings.choice(&GATHER) != "copy" {
+        if Axes::of(job.settings).traverse != "copy" {
             return None;
         }
         let (format, converts) = match job.settings.choice(&COPY) {

@@ -1,12 +1,18 @@
 #![doc = include_str!("README.md")]
 //! Based on: C. Wyman, *Hierarchical Caustic Maps*, I3D 2008. Differs: exact tracer, own receiving view, weights that
-//! sum to one. Not implemented: its gathers `hierarchical`, `combine` and `varying`.
+//! sum to one, sums in fixed point; its own columns are presets (`maps.gather`).
 
+mod axes;
 mod copied;
+mod hierarchy;
+mod splats;
 mod sums;
 mod views;
 
+use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
 use copied::{COPY, Vertices};
+use hierarchy::Hierarchy;
+use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
 use sums::Fixed;
 
 use super::{Job, Link, Method, Planned, Provided, Shown, Slot};
@@ -33,11 +39,19 @@ static SPLAT_SIZE: Whole = Whole {
     doc: "diameter of a photon's Gaussian splat; its standard deviation is a quarter of it",
 };
 
-static GATHER: Choice = Choice {
-    key: "maps.gather",
-    default: "fetch",
-    words: &["fetch", "copy"],
-    doc: "fetch: each photon is fetched from where it was traced (section 4); copy: photons are first copied to vertices (2006)",
+static TOP: Whole = Whole {
+    key: "maps.top",
+    unit: "texels",
+    default: 16,
+    range: 1..=1024,
+    doc: "with maps.traverse = hierarchical, texels along a side of the level that it starts from, at most",
+};
+
+static CULL: Choice = Choice {
+    key: "maps.cull",
+    default: "clip",
+    words: &["clip", "geometry"],
+    doc: "with maps.traverse = fetch, where photons that are none end: clip: outside the view; geometry: in a geometry shader",
 };
 
 static RECEIVERS: Choice = Choice {
@@ -47,19 +61,20 @@ static RECEIVERS: Choice = Choice {
     doc: "all: a layer of the map for each diffuse quad that the camera may see; region: for the region's receiver alone",
 };
 
-static SUM: Choice = Choice {
-    key: "maps.sum",
-    default: "fixed",
-    words: &["fixed", "blend"],
-    doc: "fixed: exact, in 64-bit fixed point (beyond 128 MiB of sums, blend); blend: drawn and blended in float32, as with maps.gather = copy always",
-};
-
 static SETTINGS: &[Setting] = &[
     Setting::Whole(&SIDE),
-    Setting::Whole(&SPLAT_SIZE),
     Setting::Choice(&GATHER),
+    Setting::Choice(&TRAVERSE),
+    Setting::Choice(&MERGE),
+    Setting::Choice(&SPLAT),
+    Setting::Choice(&TARGET),
+    Setting::Whole(&SPLAT_SIZE),
+    Setting::Choice(&FOOTPRINT),
+    Setting::Real(&LEVEL_THRESHOLD),
+    Setting::Choice(&LEVEL),
+    Setting::Whole(&TOP),
+    Setting::Choice(&CULL),
     Setting::Choice(&COPY),
-    Setting::Choice(&SUM),
     Setting::Choice(&RECEIVERS),
 ];
 
@@ -78,8 +93,16 @@ static CHAIN: &[Link] = &[
             "maps.side",
             "maps.splat_size",
             "maps.gather",
+            "maps.traverse",
+            "maps.merge",
+            "maps.splat",
+            "maps.target",
+            "maps.footprint",
+            "maps.level_threshold",
+            "maps.level",
+            "maps.top",
+            "maps.cull",
             "maps.copy",
-            "maps.sum",
             "maps.receivers",
             "eye.samples",
         ],
@@ -107,12 +130,23 @@ impl Method for Maps {
         &[Slot::Surface]
     }
 
-    fn needs(&self) -> &'static [Feature] {
-        &[Feature::Float32Blend, Feature::LargePoints]
+    fn needs(&self, settings: &Settings) -> Vec<Feature> {
+        let mut needs = vec![Feature::Float32Blend, Feature::LargePoints];
+        let axes = Axes::of(settings);
+        if axes.streams() {
+            needs.extend([Feature::GeometryShader, Feature::TransformFeedback]);
+        } else if culls(settings, axes) {
+            needs.push(Feature::GeometryShader);
+        }
+        needs
     }
 
     fn settings(&self) -> &'static [Setting] {
         SETTINGS
+    }
+
+    fn decided(&self, settings: &Settings) -> Vec<(&'static str, String)> {
+        Axes::of(settings).pairs()
     }
 
     fn columns(&self) -> &'static [Column] {
@@ -132,39 +166,38 @@ impl Method for Maps {
     }
 
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
+        let axes = Axes::checked(job.settings)?;
         let side = job.settings.whole(&SIDE);
-        let diameter = job.settings.whole(&SPLAT_SIZE);
-        let views = views::receiving(job, side, diameter);
-        let layers = views.len() as u32;
+        let views = views::receiving(job, side, job.settings.whole(&SPLAT_SIZE));
+        let splats = Splats::of(axes, side);
+        let layers = views.len() as u32 * splats.levels();
         Ok(Box::new(PlannedMaps {
-            side,
-            diameter,
+            splats,
             map: job.plan.image_array("maps/map", [side, side], layers, Format::Rgba32f, Lifetime::Frame),
             views: job.plan.upload("maps/views", &views),
-            fixed: sums::fixed(job, side, layers),
+            fixed: sums::fixed(job, axes, side, layers),
             vertices: Vertices::plan(job),
+            hierarchy: Hierarchy::plan(job, axes),
+            culls: culls(job.settings, axes),
             drawn: false,
         }))
     }
 }
 
+/// Whether a geometry shader discards what is no photon, as a traversal does by itself.
+fn culls(settings: &Settings, axes: Axes<'_>) -> bool {
+    axes.traverse == "fetch" && settings.choice(&CULL) == "geometry"
+}
+
 struct PlannedMaps {
-    side: u32,
-    diameter: u32,
+    splats: Splats,
     map: ImageId,
     views: BufferId,
     fixed: Option<Fixed>,
     vertices: Option<Vertices>,
+    hierarchy: Option<Hierarchy>,
+    culls: bool,
     drawn: bool,
-}
-
-/// Push constants of `glsl/maps/gather_fixed.comp`, `gather_fetch.vert`, `gather_copy.vert` and `splat.frag`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct GatherPush {
-    side: i32,
-    diameter: f32,
-    light: u32,
 }
 
 impl PlannedMaps {
@@ -179,39 +212,48 @@ impl Planned for PlannedMaps {
     }
 
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
-        let n = job.photons.side;
-        let light = job.emissions[view].light as u32;
-        let push = GatherPush { side: self.side as i32, diameter: self.diameter as f32, light };
+        let (n, layers) = (job.photons.side, job.photons.layers());
         if let Some(vertices) = &self.vertices {
             vertices.fill(job, &name_of("maps/copy"));
         }
-        let pass = job.photons.define(job.plan.pass(&name_of("maps/gather"))).with([self.views()]).push(&push);
-        let columns = job.photons.fetch(&[Column::Hit, Column::Flux]);
+        if let Some(hierarchy) = &self.hierarchy {
+            let light = job.emissions[view].light as u32;
+            hierarchy.traverse(job, light, (self.splats.side, self.views), name_of);
+        }
+        let (splats, columns) = (self.splats, job.photons.fetch(&[Column::Hit, Column::Flux]));
+        let photons = job.photons;
+        let (settings, emissions) = (job.settings, job.emissions);
+        let pass = photons.define(job.plan.pass(&name_of("maps/gather"))).with([self.views()]);
+        let pass = splats.tell(settings, emissions[view].light, pass);
         if let Some(fixed) = &self.fixed {
-            fixed.gather(pass.with(columns), [n, job.photons.layers()]);
+            fixed.gather(pass.with(columns), [n, layers]);
             if view + 1 == job.emissions.len() {
-                fixed.resolve(job, self.map, self.side);
+                fixed.resolve(job, self.map, splats.side);
             }
             return;
         }
         let first = !std::mem::replace(&mut self.drawn, true);
         let pass = pass.target_layers(self.map, first.then_some([0.0; 4]), Blend::Add);
-        let (pass, shader, [vertices, instances]) = match &self.vertices {
-            None => (pass.with(columns), "maps/gather_fetch.vert", [n, n * job.photons.layers()]),
-            Some(copied) => {
-                let pass = copied.attributes().into_iter().fold(pass, |pass, (b, format)| pass.attribute(b, format));
-                (pass, "maps/gather_copy.vert", [(n * n).saturating_mul(job.photons.layers()), 1])
-            }
-        };
-        pass.draw(
-            &[shader, "maps/splat.frag"],
-            Topology::Points,
-            vec![Draw { vertices, first_vertex: 0, instances, first_instance: 0 }],
-        );
+        let points = |vertices, instances| vec![Draw { vertices, first_vertex: 0, instances, first_instance: 0 }];
+        if let Some(vertices) = &self.vertices {
+            let pass = vertices.attributes().into_iter().fold(pass, |pass, (b, format)| pass.attribute(b, format));
+            let all = points((n * n).saturating_mul(layers), 1);
+            return pass.draw(&["maps/gather_copy.vert", "maps/splat.frag"], Topology::Points, all);
+        }
+        let pass = pass.with(columns);
+        if let Some(hierarchy) = &self.hierarchy {
+            return hierarchy.draw(pass, &["maps/gather_stream.vert", "maps/splat.frag"]);
+        }
+        let all = points(n, n * layers);
+        if self.culls {
+            let shaders = ["maps/gather_fetch.vert", "maps/cull.geom", "maps/splat.frag"];
+            return pass.define("CULL", 1).draw(&shaders, Topology::Points, all);
+        }
+        pass.draw(&["maps/gather_fetch.vert", "maps/splat.frag"], Topology::Points, all);
     }
 
     fn provide(&self) -> Provided {
         let reads = vec![("maps_map", Resource::Image(self.map)), self.views()];
-        Provided { surface: Some(SurfaceProvider { file: "maps/surface.glsl", reads }), deposits: vec![self.map] }
+        Provided { surface: Some(SurfaceProvider { file: self.splats.surface(), reads }), deposits: vec![self.map] }
     }
 }

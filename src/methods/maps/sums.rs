@@ -3,7 +3,7 @@
 //! Blending n photons alike into one texel errs by up to n 2⁻²⁵ of it: each addition rounds the sum the same way. In
 //! fixed point each photon is rounded once, to its 2⁻³¹, and what follows is exact.
 
-use super::{GATHER, Job, SUM};
+use super::{Axes, Job};
 use crate::{
     gpu::{BufferId, ImageId},
     passes::light,
@@ -24,13 +24,10 @@ pub struct Fixed {
 }
 
 /// Whether the map's sums are in fixed point, and where; `None` where blending was asked for, or no buffer holds them.
-pub fn fixed(job: &mut Job<'_>, side: u32, layers: u32) -> Option<Fixed> {
+pub fn fixed(job: &mut Job<'_>, axes: Axes<'_>, side: u32, layers: u32) -> Option<Fixed> {
     let bytes = u64::from(side).pow(2) * u64::from(layers) * BYTES;
-    let reason = match job.settings.choice(&SUM) {
-        _ if job.settings.choice(&GATHER) == "copy" => {
-            "maps.gather = copy: its splats are drawn, and so blended".to_owned()
-        }
-        "blend" => "maps.sum = blend".to_owned(),
+    let reason = match axes.traverse {
+        drawn if drawn != "compute" => format!("maps.traverse = {drawn}: splats are drawn, and so blended"),
         _ if bytes > BOUND => {
             format!("{bytes} bytes of sums are more than a buffer of 128 MiB holds: splats are blended")
         }

@@ -1,0 +1,47 @@
+// Photons at every level: the photon image at 0, above it the pyramid (`maps/pyramid.comp`), a quarter as many a level.
+// Its levels lie below each other in one image.
+#ifndef LEVELS_GLSL
+#define LEVELS_GLSL
+
+#include "maps/photons.glsl"
+
+int level_side(int n, int level) {
+    return (n + (1 << level) - 1) >> level;
+}
+
+// Where a texel of a level, from 1 on, lies in the pyramid over n x n photons. Levels begin at 2 a (1 - 2^-(level - 1)),
+// a the first one's side, and two rows each for sides that are rounded up.
+ivec2 pyramid_place(int n, int level, ivec2 at) {
+    int twice = 2 * level_side(n, 1);
+    return at + ivec2(0, twice - (twice >> (level - 1)) + 2 * (level - 1));
+}
+
+#ifndef PYRAMID_WRITTEN
+#ifdef MERGE
+layout(set = 0, binding = 14) uniform sampler2DArray pyramid_hit;
+layout(set = 0, binding = 15) uniform sampler2DArray pyramid_flux;
+#elif defined(TRAVERSE)
+layout(set = 0, binding = 14) uniform sampler2DArray pyramid_valid;
+#endif
+
+ivec3 above(ivec2 at, int level, int layer) {
+    return ivec3(pyramid_place(photons_side(), level, at), layer);
+}
+
+// Columns at a level. Of what does not merge, only the photons themselves are asked for.
+vec4 hit_of(ivec2 at, int level, int layer) {
+#ifdef MERGE
+    if (level > 0) return texelFetch(pyramid_hit, above(at, level, layer), 0);
+#endif
+    return hit_at(at, layer);
+}
+
+vec4 flux_of(ivec2 at, int level, int layer) {
+#ifdef MERGE
+    if (level > 0) return texelFetch(pyramid_flux, above(at, level, layer), 0);
+#endif
+    return flux_at(at, layer);
+}
+#endif
+
+#endif

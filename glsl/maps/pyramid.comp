@@ -1,0 +1,68 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+// A level of the pyramid over the photons from the one below: with MERGE the mean of what is valid, as hardware makes mip
+// maps (receiver and normal are the first one's); else whether anything is.
+
+#define PYRAMID_WRITTEN
+#include "maps/levels.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(push_constant) uniform Push {
+    int side; // photons along a side
+    int level;
+} push;
+
+#ifdef MERGE
+layout(set = 0, binding = 14, rgba32f) uniform image2DArray pyramid_hit;
+layout(set = 0, binding = 15, rgba32f) uniform image2DArray pyramid_flux;
+#else
+layout(set = 0, binding = 14, r32f) uniform image2DArray pyramid_valid;
+#endif
+
+ivec3 place(ivec2 at, int level, int layer) {
+    return ivec3(pyramid_place(push.side, level, at), layer);
+}
+
+void main() {
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(texel.xy, ivec2(level_side(push.side, push.level))))) return;
+    int below = push.level - 1;
+    vec4 hit = vec4(0.0), flux = vec4(0.0);
+    float count = 0.0;
+    for (int k = 0; k < 4; k++) {
+        ivec2 at = 2 * texel.xy + ivec2(k & 1, k >> 1);
+        if (any(greaterThanEqual(at, ivec2(level_side(push.side, below))))) continue;
+#ifdef FROM_PHOTONS
+        vec4 h = hit_at(at, texel.z);
+#elif defined(MERGE)
+        vec4 h = imageLoad(pyramid_hit, place(at, below, texel.z));
+#else
+        vec4 h = imageLoad(pyramid_valid, place(at, below, texel.z)).rrrr;
+#endif
+        if (h.w == 0.0) continue;
+#ifdef MERGE
+#ifdef FROM_PHOTONS
+        vec4 f = flux_at(at, texel.z);
+#else
+        vec4 f = imageLoad(pyramid_flux, place(at, below, texel.z));
+#endif
+        if (count == 0.0) {
+            hit.w = h.w;
+            flux.w = f.w;
+        }
+        hit.xyz += h.xyz;
+        flux.rgb += f.rgb;
+#endif
+        count += 1.0;
+    }
+    ivec3 to = place(texel.xy, push.level, texel.z);
+#ifdef MERGE
+    float share = count > 0.0 ? 1.0 / count : 0.0;
+    imageStore(pyramid_hit, to, vec4(hit.xyz * share, hit.w));
+    imageStore(pyramid_flux, to, vec4(flux.rgb * share, flux.w));
+#else
+    imageStore(pyramid_valid, to, vec4(count > 0.0 ? 1.0 : 0.0));
+#endif
+}

@@ -1,0 +1,164 @@
+//! The axes of gathering photons, and the paper's columns as presets of them.
+
+use crate::{
+    passes::PlanError,
+    settings::{Choice, Setting, Settings},
+};
+
+pub static GATHER: Choice = Choice {
+    key: "maps.gather",
+    default: "own",
+    words: &["own", "copy", "fetch", "hierarchical", "combine-last", "combine-all", "varying-multires", "varying-single"],
+    doc: "a column of the paper's Table 3, which sets the four axes below; own: as the axes say",
+};
+
+pub static TRAVERSE: Choice = Choice {
+    key: "maps.traverse",
+    default: "compute",
+    words: &["compute", "copy", "fetch", "hierarchical"],
+    doc: "how photons reach the map: compute: a dispatch over them, summed exactly in 64-bit fixed point (beyond 128 MiB of sums, \
+          fetch); the others draw points, blended in float32: copy: of a vertex buffer (2006); fetch: fetched where they \
+          were traced (section 4); hierarchical: streamed out level by level, without what is invalid (section 3.1)",
+};
+
+pub static MERGE: Choice = Choice {
+    key: "maps.merge",
+    default: "none",
+    words: &["none", "last", "all"],
+    doc: "with hierarchical, whether four photons that fall into one texel become one of 4^i times the flux (section 3.2): \
+          none; last: tested at the last level; all: at every level",
+};
+
+pub static SPLAT: Choice = Choice {
+    key: "maps.splat",
+    default: "fixed",
+    words: &["fixed", "varying"],
+    doc: "how large splats are: fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3)",
+};
+
+pub static TARGET: Choice = Choice {
+    key: "maps.target",
+    default: "single",
+    words: &["single", "multires"],
+    doc: "where varying splats go: single: one map; multires: large ones into smaller levels of it, which the eye sums",
+};
+
+/// The four axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axes<'s> {
+    pub traverse: &'s str,
+    pub merge: &'s str,
+    pub splat: &'s str,
+    pub target: &'s str,
+}
+
+/// The columns of Table 3. What its varying splats ran behind the paper does not say; its times are about twice those of
+/// combine-all, as its text says.
+const PRESETS: [(&str, [&str; 4]); 7] = [
+    ("copy", ["copy", "none", "fixed", "single"]),
+    ("fetch", ["fetch", "none", "fixed", "single"]),
+    ("hierarchical", ["hierarchical", "none", "fixed", "single"]),
+    ("combine-last", ["hierarchical", "last", "fixed", "single"]),
+    ("combine-all", ["hierarchical", "all", "fixed", "single"]),
+    ("varying-multires", ["hierarchical", "all", "varying", "multires"]),
+    ("varying-single", ["hierarchical", "all", "varying", "single"]),
+];
+
+const KEYS: [&Choice; 4] = [&TRAVERSE, &MERGE, &SPLAT, &TARGET];
+
+impl<'s> Axes<'s> {
+    /// The axes in force, be they of one meaning together or not.
+    pub fn of(settings: &'s Settings) -> Self {
+        let preset = PRESETS.iter().find(|(name, _)| *name == settings.choice(&GATHER)).map(|(_, values)| *values);
+        let [traverse, merge, splat, target] = preset.unwrap_or_else(|| KEYS.map(|key| settings.choice(key)));
+        Self { traverse, merge, splat, target }
+    }
+
+    /// As [`Self::of`].
+    ///
+    /// # Errors
+    /// Axes that contradict the preset, or each other.
+    pub fn checked(settings: &'s Settings) -> Result<Self, PlanError> {
+        let axes = Self::of(settings);
+        for (key, value) in KEYS.into_iter().zip(axes.values()) {
+            let asked = settings.choice(key);
+            if settings.is_set(Setting::Choice(key)) && asked != value {
+                let gather = settings.choice(&GATHER);
+                let what = format!("{}={asked} with maps.gather={gather}", key.key);
+                let reason = format!("that preset has {}={value}", key.key);
+                return refused(what, reason, "leave maps.gather out, and set the axes alone");
+            }
+        }
+        match axes {
+            Self { traverse, merge, .. } if merge != "none" && traverse != "hierarchical" => {
+                let what = format!("maps.merge={merge} with maps.traverse={traverse}");
+                refused(what, "only a hierarchy knows which photons lie together", "set maps.traverse=hierarchical")
+            }
+            Self { traverse: "copy", splat: "varying", .. } => refused(
+                "maps.splat=varying with maps.traverse=copy",
+                "a vertex knows nothing of the photons beside it",
+                "set maps.traverse=fetch",
+            ),
+            Self { splat: "fixed", target: "multires", .. } => refused(
+                "maps.target=multires with maps.splat=fixed",
+                "splats of one size have one level",
+                "set maps.splat=varying",
+            ),
+            _ => Ok(axes),
+        }
+    }
+
+    fn values(self) -> [&'s str; 4] {
+        [self.traverse, self.merge, self.splat, self.target]
+    }
+
+    /// By key.
+    pub fn pairs(self) -> Vec<(&'static str, String)> {
+        KEYS.into_iter().zip(self.values()).map(|(key, value)| (key.key, value.to_owned())).collect()
+    }
+
+    /// Whether points are streamed out by transform feedback.
+    pub fn streams(self) -> bool {
+        self.traverse == "hierarchical"
+    }
+}
+
+fn refused<T>(what: impl Into<String>, reason: impl Into<String>, remedy: &str) -> Result<T, PlanError> {
+    Err(PlanError::Refused { what: what.into(), reason: reason.into(), remedy: remedy.into() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings(set: &[(&str, &str)]) -> Settings {
+        let mut settings = Settings::default();
+        set.iter().for_each(|(key, value)| settings.set(super::super::SETTINGS, key, value).unwrap());
+        settings
+    }
+
+    #[test]
+    fn every_word_of_the_presets_is_one_of_its_axis() {
+        assert_eq!(PRESETS.map(|(name, _)| name).as_slice(), &GATHER.words[1..]);
+        for (name, values) in PRESETS {
+            assert!(KEYS.iter().zip(values).all(|(key, value)| key.words.contains(&value)), "{name}");
+            assert!(Axes::checked(&settings(&[("maps.gather", name)])).is_ok());
+        }
+    }
+
+    #[test]
+    fn what_has_no_meaning_is_refused_with_the_reason() {
+        let refused: [&[(&str, &str)]; 4] = [
+            &[("maps.gather", "fetch"), ("maps.traverse", "hierarchical")],
+            &[("maps.merge", "last")],
+            &[("maps.traverse", "copy"), ("maps.splat", "varying")],
+            &[("maps.target", "multires")],
+        ];
+        for set in refused {
+            let text = Axes::checked(&settings(set)).unwrap_err().to_string();
+            assert!(set.iter().all(|(key, value)| text.contains(&format!("{key}={value}"))), "{text}");
+        }
+        let agreeing = [("maps.gather", "combine-all"), ("maps.merge", "all")];
+        assert_eq!(Axes::checked(&settings(&agreeing)).unwrap().merge, "all");
+    }
+}
