@@ -1,6 +1,11 @@
 //! Gather `copy`: the picture of `fetch` blended where nothing is rounded, and what float16 costs where it is.
 
+#[path = "../common/mod.rs"]
 mod common;
+mod hard;
+mod levels;
+mod model;
+mod varying;
 
 use common::{
     assert_quiet, gpu, job,
