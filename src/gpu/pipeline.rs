@@ -216,8 +216,9 @@ impl Shared {
         });
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let nothing_drawn = state.streams && state.colors.is_empty() && !state.depth;
-        let raster =
-            vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).rasterizer_discard_enable(nothing_drawn);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .line_width(1.0)
+            .rasterizer_discard_enable(nothing_drawn);
         let samples =
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()

@@ -52,7 +52,8 @@ pub(super) fn pipeline(shared: &Shared, format: vk::Format) -> Result<Arc<Pipeli
     };
     let stages = SHADERS.into_iter().map(stage).collect::<Result<Vec<_>, GpuError>>()?;
     let colors = vec![(format, Blend::Replace)];
-    let raster = RasterState { colors, depth: false, topology: Topology::Triangles, attributes: Vec::new(), streams: false };
+    let raster =
+        RasterState { colors, depth: false, topology: Topology::Triangles, attributes: Vec::new(), streams: false };
     let pipeline = shared.pipeline(&plan.passes[0], &stages, Some(&raster))?;
     pipeline.check(&plan.passes[0])?;
     Ok(pipeline)

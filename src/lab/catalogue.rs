@@ -3,7 +3,11 @@
 use serde::Serialize;
 
 use super::{Cell, Report, Table};
-use crate::{methods, renderer, scene::Scene, settings::{Setting, Settings}};
+use crate::{
+    methods, renderer,
+    scene::Scene,
+    settings::{Setting, Settings},
+};
 
 /// Every method and every setting.
 #[derive(Debug, Serialize)]

@@ -22,7 +22,8 @@ const FUSED: u64 = 3;
 /// Points that each step takes and the gather draws, as the device counts them.
 fn counted(renderer: &mut Renderer) -> Vec<u64> {
     let counters = renderer.counters(&Frame::default()).expect("passes are counted");
-    let steps = counters.iter().filter(|(name, _)| name.starts_with("maps/traverse") || name.starts_with("maps/gather"));
+    let steps =
+        counters.iter().filter(|(name, _)| name.starts_with("maps/traverse") || name.starts_with("maps/gather"));
     steps.map(|(_, c)| c.points.expect("points are counted")).collect()
 }
 

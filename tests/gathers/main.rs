@@ -22,12 +22,7 @@ const HALF_ENERGY: f64 = 5e-3;
 const SUMS: f64 = 1e-4;
 
 fn gathered(gpu: &nephroid::gpu::Gpu, scene: &str, gather: &str, copy: &str, side: &str) -> Picture {
-    let set = [
-        ("maps.gather", gather),
-        ("maps.copy", copy),
-        ("light.side", side),
-        ("maps.side", "64"),
-    ];
+    let set = [("maps.gather", gather), ("maps.copy", copy), ("light.side", side), ("maps.side", "64")];
     picture(gpu, &job(scene, &set, "region", [48, 48]))
 }
 

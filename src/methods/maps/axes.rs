@@ -8,7 +8,16 @@ use crate::{
 pub static GATHER: Choice = Choice {
     key: "maps.gather",
     default: "own",
-    words: &["own", "copy", "fetch", "hierarchical", "combine-last", "combine-all", "varying-multires", "varying-single"],
+    words: &[
+        "own",
+        "copy",
+        "fetch",
+        "hierarchical",
+        "combine-last",
+        "combine-all",
+        "varying-multires",
+        "varying-single",
+    ],
     doc: "a column of the paper's Table 3, which sets the four axes below; own: as the axes say",
 };
 

@@ -56,7 +56,8 @@ impl Hierarchy {
         let top = job.settings.whole(&TOP);
         let levels = (0..u32::BITS - 1).find(|&level| level_side(side, level) <= top).unwrap_or(0);
         if levels == 0 {
-            let reason = format!("{side} photons a side are no more than the topmost level's (maps.top): they are fetched");
+            let reason =
+                format!("{side} photons a side are no more than the topmost level's (maps.top): they are fetched");
             ["maps/pyramid", "maps/traverse"].iter().for_each(|name| job.plan.leave_out(name, reason.clone()));
             return None;
         }
