@@ -2,7 +2,7 @@
 //!
 //! A regular grid of triangles whose vertices have the surface's own normals. Every tracer, the raster views, the eye and
 //! the truth take it for the mesh that it is, so that they agree; what the triangles differ from the surface is known
-//! (`tests/sheets.rs`), and falls as the square of the cells.
+//! (`tests/pictures/sheets.rs`), and falls as the square of the cells.
 
 use std::sync::Arc;
 

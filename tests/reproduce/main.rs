@@ -1,9 +1,0 @@
-//! `nephroid reproduce`: published figures are those of the papers, measured ones never stand alone, and what is not
-//! run says why.
-
-#[path = "../common/mod.rs"]
-mod common;
-
-mod command;
-mod published;
-mod tiny;
