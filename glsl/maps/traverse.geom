@@ -43,14 +43,15 @@ bool child_of(StreamPoint p, int k, out ivec2 texel) {
 }
 
 #ifdef CONVERGE
-// Whether every child that is valid falls into one texel of one map.
+// Whether all children fall into one texel of one map. One that is invalid falls nowhere; but a valid one may be the mean of
+// few photons, which the factor 4^i then counts as all.
 bool converges(StreamPoint p) {
     ivec3 common_texel = ivec3(-1);
     for (int k = 0; k < 4; k++) {
         ivec2 texel;
         if (!child_of(p, k, texel)) continue;
         vec4 hit = hit_of(texel, p.level - 1, p.layer);
-        if (hit.w == 0.0) continue;
+        if (hit.w == 0.0) return false;
         vec2 xy01;
         vec3 normal = photon_normal(flux_of(texel, p.level - 1, p.layer).w);
         int map = map_layer(hit.xyz, normal, uint(hit.w) - 1u, push.light, xy01);

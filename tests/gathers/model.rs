@@ -131,7 +131,7 @@ impl Model {
             let index = (at.y as u32 * level.side + at.x as u32) as usize;
             let hit = level.hit[index];
             if hit[3] == 0.0 {
-                continue;
+                return false;
             }
             let texel = self.texel(Vec3::from_slice(&hit[..3]), unpacked(level.normal[index]), hit[3] as u32 - 1);
             if texel.is_none() || common.is_some_and(|c| Some(c) != texel) {

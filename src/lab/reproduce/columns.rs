@@ -7,47 +7,98 @@ use crate::{
     settings::{SettingError, Settings},
 };
 
-/// The scene that stands in for the paper's.
-pub const SCENE: &str = "glass-sphere";
+/// What a variant renders: a scene that stands in for the paper's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The scene of Fig. 7.
+    Still,
+    /// The animation of Table 4.
+    Animation,
+}
+
+/// When the animation's timed frames begin and end, s: while its sphere is in the beam.
+const ANIMATION: [f64; 2] = [0.0, 0.6];
+
+impl Subject {
+    /// The name of the shipped scene.
+    pub fn scene(self) -> &'static str {
+        match self {
+            Self::Still => "glass-sphere",
+            Self::Animation => "moving-sphere",
+        }
+    }
+
+    /// The moment of round `k` of `rounds`, s.
+    pub fn time(self, k: u32, rounds: u32) -> f64 {
+        let [from, to] = ANIMATION;
+        match self {
+            Self::Still => 0.0,
+            Self::Animation => from + (to - from) * f64::from(k) / f64::from(rounds.max(1)),
+        }
+    }
+
+    /// The moment whose picture is judged, s.
+    pub fn judged(self) -> f64 {
+        self.time(1, 2)
+    }
+
+    /// How its run differs from the paper's.
+    pub fn deviations(self) -> Vec<&'static str> {
+        let own = match self {
+            Self::Still => {
+                "the scene is glass-sphere: the model and the light of the paper's Fig. 7 are not published as data"
+            }
+            Self::Animation => {
+                "the animation is moving-sphere from 0 to 0.6 s, a moment a round, judged at 0.3 s: the paper's is not published"
+            }
+        };
+        std::iter::once(own).chain(DEVIATIONS).collect()
+    }
+}
 
 /// The set-up of the 2006 and 2008 papers, which every variant shares.
 const SETUP: [(&str, &str); 2] = [("light.view", "shared"), ("light.tracer", "wyman2005")];
 
-/// What differs from the paper's run, and why.
-pub const DEVIATIONS: [&str; 4] = [
-    "the scene is glass-sphere: the model and the light of the paper's Fig. 7 are not published as data",
+/// What differs from the paper's run in every table, and why.
+const DEVIATIONS: [&str; 3] = [
     "the eye sees the receiver region straight on, without the glass, at the size stated: the picture that is timed is the one that is judged",
     "the photon image has two columns, position and flux (16 or 32 bits a channel), and all copies take both",
-    "splats are Gaussians whose weights sum to one, of 3 texels in a map of maps.side",
+    "splats are Gaussians whose weights sum to one, of 3 texels in a map of maps.side; varying splats are drawn behind combine-all (the paper does not say behind which), as large as photons lie apart on the receiver",
 ];
 
-/// Which stages of a frame a column is.
+/// What of a frame a column is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// What the light sees, and the tracer.
+    /// What the light sees, and the tracer, ms.
     Photons,
-    /// Photon image to vertex buffer.
+    /// Photon image to vertex buffer, ms.
     Copy,
-    /// Photons to map.
+    /// Photons to map, ms.
     Gather,
-    /// The rest: the picture with the finished map.
+    /// The rest: the picture with the finished map, ms.
     Eye,
+    /// The whole, in frames a second.
+    Rate,
 }
 
 impl Part {
     /// Whether a stage belongs to it.
     pub fn holds(self, stage: &str) -> bool {
         let part = match stage {
+            _ if self == Self::Rate => self,
             s if s.starts_with("light/") => Self::Photons,
             s if s.starts_with("maps/copy") => Self::Copy,
-            s if s.starts_with("maps/gather") => Self::Gather,
+            s if s.starts_with("maps/") => Self::Gather,
             _ => Self::Eye,
         };
         part == self
     }
 
-    /// What it takes of a frame with these stages, ms.
+    /// What it is of a frame with these stages.
     pub fn of(self, stages: &[String], frame: &FrameTimes) -> f64 {
+        if self == Self::Rate {
+            return 1e3 / frame.span_ms;
+        }
         stages.iter().zip(&frame.passes).filter(|(stage, _)| self.holds(stage)).map(|(_, ms)| ms).sum()
     }
 }
@@ -55,16 +106,17 @@ impl Part {
 /// A way to gather: the settings beside [`SETUP`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
+    /// What it renders.
+    pub subject: Subject,
     /// `maps.gather`.
     pub gather: &'static str,
     /// `maps.copy`.
     pub copy: &'static str,
 }
 
-const COPY_2006: Variant = Variant { gather: "copy", copy: "16-32" };
-const COPY_32: Variant = Variant { gather: "copy", copy: "32-32" };
-const COPY_16: Variant = Variant { gather: "copy", copy: "16-16" };
-const FETCH: Variant = Variant { gather: "fetch", copy: "32-32" };
+const COPY_2006: Variant = Variant { subject: Subject::Still, gather: "copy", copy: "16-32" };
+const COPY_32: Variant = Variant { copy: "32-32", ..COPY_2006 };
+const COPY_16: Variant = Variant { copy: "16-16", ..COPY_2006 };
 
 impl Variant {
     /// In words.
@@ -89,7 +141,7 @@ impl Variant {
 
 /// Who measures a column of a table, and in which part of the frame; else what is missing.
 pub fn runs(published: &Published, column: &str) -> Result<(Variant, Part), String> {
-    let no_gather = |name: &str| Err(format!("maps.gather has no `{name}` yet"));
+    let gather = |gather| Variant { gather, ..COPY_32 };
     match (published.id.as_str(), column) {
         ("maps.table1" | "maps.table3", "render_photon_buffer") => Ok((COPY_2006, Part::Photons)),
         ("maps.table1", "copy_to_vertex_array") => Ok((COPY_2006, Part::Copy)),
@@ -98,16 +150,30 @@ pub fn runs(published: &Published, column: &str) -> Result<(Variant, Part), Stri
         ("maps.table2", "f16_to_f32") => Ok((COPY_2006, Part::Copy)),
         ("maps.table2", "f32_to_f32") => Ok((COPY_32, Part::Copy)),
         ("maps.table2", "f16_to_f16") => Ok((COPY_16, Part::Copy)),
-        ("maps.table3", "gather_fetch") => Ok((FETCH, Part::Gather)),
-        ("maps.table3", "final_multires_map") => no_gather("varying-multires"),
-        ("maps.table3", gather) => no_gather(&gather.trim_start_matches("gather_").replace('_', "-")),
-        ("maps.table4", "copy" | "fetch") => Err("frame rates over an animation are not measured here yet".to_owned()),
-        ("maps.table4", gather) => no_gather(&gather.replace('_', "-")),
-        ("maps.table5", _) => no_gather("hierarchical"),
+        ("maps.table3", "final_multires_map") => Ok((gather("varying-multires"), Part::Eye)),
+        ("maps.table3", column) => match known(column.trim_start_matches("gather_")) {
+            Some(word) => Ok((gather(word), Part::Gather)),
+            None => Err("not run here yet".to_owned()),
+        },
+        ("maps.table4", column) => {
+            let variant = match column {
+                "copy" => COPY_2006,
+                "varying" => gather("varying-multires"),
+                other => gather(known(other).ok_or("not run here yet")?),
+            };
+            Ok((Variant { subject: Subject::Animation, ..variant }, Part::Rate))
+        }
+        ("maps.table5", _) => Err("no scene with two lights round a model ships yet".to_owned()),
         _ => {
             let method = published.method();
             let built = methods::ALL.iter().any(|m| m.name() == method);
             Err(if built { "not run here yet".to_owned() } else { format!("the method `{method}` is not built yet") })
         }
     }
+}
+
+/// The preset of `maps.gather` that a column's key names.
+fn known(column: &str) -> Option<&'static str> {
+    let words = ["fetch", "hierarchical", "combine-last", "combine-all", "varying-multires", "varying-single"];
+    words.into_iter().find(|word| *word == column.replace('_', "-"))
 }

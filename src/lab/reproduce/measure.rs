@@ -1,10 +1,10 @@
 //! The runs: one renderer a variant and N, as many as time and memory allow, timed in rounds, then judged.
 
-use std::{ops::ControlFlow, sync::Arc, time::Instant};
+use std::{cell::Cell, ops::ControlFlow, sync::Arc, time::Instant};
 
 use super::{
     Extent, Watch,
-    columns::{self, SCENE, Variant},
+    columns::{self, Part, Subject, Variant},
 };
 use crate::{
     gpu::{Gpu, GpuError, Sources},
@@ -14,7 +14,7 @@ use crate::{
         compare::judged_figure,
         exposure,
         papers::{Label, Published},
-        timing::{self, Rounds, Timed},
+        timing::{self, Beat, Rounds, Timed},
     },
     methods,
     metrics::Measure,
@@ -43,6 +43,10 @@ pub struct Measured {
     pub stages: Vec<String>,
     /// Photons that arrived, of those emitted, and their share of the flux.
     pub valid: [f64; 2],
+    /// Points that gathering draws, those of every step of a traversal among them.
+    pub points: Option<u64>,
+    /// Flux in the map over the flux that arrived in it.
+    pub kept: Option<f64>,
     /// Of the picture; none before it was judged.
     pub relmse: Option<Measure>,
     pub layers: Layers,
@@ -95,9 +99,15 @@ pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, wat
 /// The account and the picture of the frame that was timed.
 fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
     let Ready { variant, side, job, mut renderer } = ready;
+    let frame = Frame { time: variant.subject.judged(), ..Frame::default() };
+    renderer.frame(&frame)?;
     let account = renderer.account()?;
+    let kept = renderer.energy(&account)?.ratio;
     let layers = renderer.layers()?;
-    let provenance = Provenance::new(&job, &Frame::default(), gpu.info(), Vec::new());
+    let provenance = Provenance::new(&job, &frame, gpu.info(), Vec::new());
+    let counters = renderer.counters(&frame)?;
+    let points = counters.iter().filter(|(stage, _)| Part::Gather.holds(stage)).filter_map(|(_, c)| c.points);
+    let points = points.reduce(|a, b| a + b);
     let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let photons = share(account.counts[VALID] as f64, account.emitted() as f64);
     let valid = [photons, share(account.valid_w(), account.emitted_w())];
@@ -105,7 +115,18 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
     let picture = Picture { file: variant.name(), layers: layers.clone(), about: provenance.attributes() };
     Ok((
         picture,
-        Measured { variant, side, stages: renderer.stages(), valid, relmse: None, layers, exposure_ev, provenance },
+        Measured {
+            variant,
+            side,
+            stages: renderer.stages(),
+            valid,
+            points,
+            kept,
+            relmse: None,
+            layers,
+            exposure_ev,
+            provenance,
+        },
     ))
 }
 
@@ -129,7 +150,8 @@ fn wanted(published: &Published) -> (Vec<u32>, Vec<Variant>) {
 /// Renderers for every N that fits, smallest first, and why others do not.
 fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> Result<(Vec<Ready>, LeftOut), LabError> {
     let (sides, variants) = wanted(published);
-    let scene = Arc::new(Scene::load(SCENE, &[]).expect("a shipped scene loads: a test loads them all"));
+    let subject = variants.first().map_or(Subject::Still, |variant| variant.subject);
+    let scene = Arc::new(Scene::load(subject.scene(), &[]).expect("a shipped scene loads: a test loads them all"));
     let (mut ready, mut left_out) = (Vec::new(), Vec::new());
     let (mut spent, mut last, mut bytes) = (0.0, 0.0, 0);
     for side in sides {
@@ -203,14 +225,23 @@ fn of_side(
 }
 
 fn time(ready: &mut [Ready], rounds: u32, watch: &mut dyn FnMut(bool) -> ControlFlow<()>) -> Result<Timed, LabError> {
+    let now = Cell::new(0); // every variant renders the same moment in a round
     let mut list = Vec::new();
     for ready in ready {
+        let (now, subject) = (&now, ready.variant.subject);
         let name = format!("{}, {}² photons", ready.variant.name(), ready.side);
         let stages = ready.renderer.stages();
-        let frame = || Ok(ready.renderer.frame(&Frame::default())?);
+        let frame = move || {
+            let frame = Frame { time: subject.time(now.get(), rounds), ..Frame::default() };
+            Ok(ready.renderer.frame(&frame)?)
+        };
         list.push(timing::Variant { name, stages, frame: Box::new(frame) });
     }
     let mut begun = false;
-    Rounds { rounds, most_warmup: MOST_WARMUP, seed: SEED }
-        .run(&mut list, &mut |_| watch(!std::mem::replace(&mut begun, true)))
+    Rounds { rounds, most_warmup: MOST_WARMUP, seed: SEED }.run(&mut list, &mut |beat| {
+        if let Beat::Timed { round, .. } = beat {
+            now.set(round);
+        }
+        watch(!std::mem::replace(&mut begun, true))
+    })
 }

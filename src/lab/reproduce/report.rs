@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::{
     Extent,
-    columns::{self, DEVIATIONS, Part, SCENE},
+    columns::{self, Part},
     measure::{Measured, Run},
 };
 use crate::{
@@ -62,6 +62,10 @@ struct Row {
     ratio: Option<f64>,
     /// Of the picture of the frame that was timed.
     relmse: Option<Known>,
+    /// Flux in the map over the flux that arrived in it: less where splats are dropped, more where clusters invent light.
+    kept: Option<f64>,
+    /// Points that gathering draws in all, where it draws points.
+    points: Option<u64>,
     /// Why there is no `measured`.
     missing: Option<String>,
 }
@@ -175,8 +179,8 @@ impl ReproduceReport {
             ));
         }
         Self {
-            scene: Some(SCENE),
-            deviations: DEVIATIONS.to_vec(),
+            scene: first.map(|m| m.variant.subject.scene()),
+            deviations: first.map(|m| m.variant.subject.deviations()).unwrap_or_default(),
             device,
             size: Some(extent.size),
             repeats: Some(extent.rounds),
@@ -225,6 +229,8 @@ impl Row {
             measured: None,
             ratio: None,
             relmse: None,
+            kept: None,
+            points: None,
             missing,
         }
     }
@@ -238,7 +244,8 @@ impl Row {
                 let measured = Known::from(Summary::of(samples));
                 let ratio = Some(measured.value / figure.value).filter(|ratio| ratio.is_finite());
                 let relmse = m.relmse.map(Known::from);
-                Self { measured: Some(measured), ratio, relmse, ..Self::missing(published, figure, None) }
+                let (kept, points, none) = (m.kept, m.points, Self::missing(published, figure, None));
+                Self { measured: Some(measured), ratio, relmse, kept, points, ..none }
             }
         }
     }
@@ -325,9 +332,23 @@ impl Report for ReproduceReport {
             let [measured, interval] = cells(r.measured.as_ref());
             let ratio = r.ratio.map_or(Cell::None, |ratio| Cell::text(short(ratio)));
             let [relmse, _] = cells(r.relmse.as_ref());
+            let kept = r.kept.map_or(Cell::None, |kept| Cell::Real(kept, 4));
+            let points = r.points.map_or(Cell::None, Cell::Count);
             let missing = r.missing.as_ref().map_or(Cell::None, Cell::text);
             let (row, published) = (Cell::text(r.row.text()), Cell::text(r.published.to_string()));
-            vec![row, Cell::text(&r.column), Cell::text(r.unit), published, measured, interval, ratio, relmse, missing]
+            vec![
+                row,
+                Cell::text(&r.column),
+                Cell::text(r.unit),
+                published,
+                measured,
+                interval,
+                ratio,
+                relmse,
+                kept,
+                points,
+                missing,
+            ]
         });
         let shape = self.shape.iter().map(|s| {
             let [measured, interval] = s.measured.cells();
@@ -338,7 +359,19 @@ impl Report for ReproduceReport {
             let n = Cell::Count(p.n.into());
             vec![Cell::text(&p.variant), n, Cell::Real(p.valid_photons, 4), Cell::Real(p.valid_flux, 4)]
         });
-        let of_rows = vec!["row", "column", "unit", "published", "measured", "99 %", "ratio", "relmse", "missing"];
+        let of_rows = vec![
+            "row",
+            "column",
+            "unit",
+            "published",
+            "measured",
+            "99 %",
+            "ratio",
+            "relmse",
+            "kept",
+            "points",
+            "missing",
+        ];
         let of_shape = vec!["from", "to", "published ratio", "measured ratio", "99 %", "within"];
         vec![
             Table { name: "rows", columns: of_rows, rows: rows.collect() },

@@ -26,12 +26,12 @@ fn run(gpu: &Gpu, id: &str, extent: &Extent) -> Value {
 #[test]
 fn what_runs_is_measured_with_all_that_it_depends_on() {
     let gpu = gpu();
-    for (id, columns) in [("maps.table2", 3), ("maps.table3", 4)] {
+    for (id, columns) in [("maps.table2", 3), ("maps.table3", 10), ("maps.table4", 6)] {
         let report = run(&gpu, id, &extent());
         assert_eq!(report["schema"], "nephroid.reproduce/1");
         let rows = report["rows"].as_array().unwrap();
         assert_eq!(rows.len(), papers::find(id).unwrap().figures.len());
-        let keys = ["row", "column", "unit", "published", "measured", "ratio", "relmse", "missing"];
+        let keys = ["row", "column", "unit", "published", "measured", "ratio", "relmse", "kept", "points", "missing"];
         for row in rows {
             let row = row.as_object().unwrap();
             assert_eq!(row.keys().collect::<Vec<_>>(), keys);
