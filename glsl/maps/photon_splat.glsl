@@ -24,13 +24,14 @@ struct Landed {
 
 struct Splat {
     vec3 flux;      // W, already divided by the sum of the weights
+    float count;    // photons, divided by it too
     vec2 centre;    // texels of its level
     float diameter; // texels of its level
     int side;       // texels of its level
     int layer;      // of the image
 };
 
-const Splat NO_SPLAT = Splat(vec3(0.0), vec2(0.0), 1.0, 0, 0);
+const Splat NO_SPLAT = Splat(vec3(0.0), 0.0, vec2(0.0), 1.0, 0, 0);
 
 // From its columns. False if no map takes the photon, or there is none.
 bool land(vec4 hit, float normal, out Landed l) {
@@ -75,7 +76,7 @@ bool splat_of(Landed l, vec3 flux, float diameter, out Splat s) {
     float d = splat_diameter(scale * diameter);
     float norm = splat_norm(p.x, d, side) * splat_norm(p.y, d, side);
     if (!(norm > 0.0)) return false;
-    s = Splat(flux / norm, p, d, side, layer);
+    s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);
     return true;
 }
 

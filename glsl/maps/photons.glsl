@@ -3,14 +3,15 @@
 #define PHOTONS_GLSL
 
 #ifdef LAYERS
-layout(set = 0, binding = 8) uniform sampler2DArray photons_hit;
-layout(set = 0, binding = 9) uniform sampler2DArray photons_flux;
+#define PHOTON_SAMPLER sampler2DArray
 #define PHOTON_PLACE(texel, layer) ivec3(texel, layer)
 #else
-layout(set = 0, binding = 8) uniform sampler2D photons_hit;
-layout(set = 0, binding = 9) uniform sampler2D photons_flux;
+#define PHOTON_SAMPLER sampler2D
 #define PHOTON_PLACE(texel, layer) texel
 #endif
+
+layout(set = 0, binding = 8) uniform PHOTON_SAMPLER photons_hit;
+layout(set = 0, binding = 9) uniform PHOTON_SAMPLER photons_flux;
 
 vec4 hit_at(ivec2 texel, int layer) {
     return texelFetch(photons_hit, PHOTON_PLACE(texel, layer), 0);

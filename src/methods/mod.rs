@@ -129,8 +129,8 @@ pub trait Method: Sync {
         Vec::new()
     }
 
-    /// The photon columns it reads.
-    fn columns(&self) -> &'static [Column];
+    /// The photon columns it reads, as set.
+    fn columns(&self, settings: &Settings) -> Vec<Column>;
     /// Whether it wants them all in float16.
     fn halves(&self, _: &Settings) -> bool {
         false

@@ -114,6 +114,8 @@ struct EyePush {
 pub struct SurfaceProvider {
     /// The file that defines `surface_irradiance`.
     pub file: &'static str,
+    /// What it is told by the preprocessor.
+    pub defines: Vec<(&'static str, String)>,
     /// What it reads.
     pub reads: Vec<(&'static str, Resource)>,
 }
@@ -249,6 +251,7 @@ impl Eye<'_> {
             .surfaces(self.buffers.colours(self.plan.pass("eye/surface")))
             .with(provider.reads.iter().copied())
             .provide("provider.glsl", provider.file)
+            .defines(&provider.defines)
             .read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
             .push(&self.push)
@@ -272,6 +275,7 @@ impl Eye<'_> {
             .lights(self.buffers.tracing(self.buffers.colours(self.plan.pass("eye/trace"))))
             .with(reads)
             .provide("provider.glsl", surface.map_or("eye/no_surface.glsl", |s| s.file))
+            .defines(surface.map_or(&[], |s| &s.defines))
             .read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
             .define("LIGHT_COUNT", lights)

@@ -140,7 +140,7 @@ fn photon_passes(
     };
     let most = || emissions.iter().map(|e| e.most(scene, settings.whole(&light::SIDE))).fold(0.0, f64::max);
     let half = method.halves(settings).then(most);
-    let photons = light::photon_buffer(plan, settings, class, method.columns(), half);
+    let photons = light::photon_buffer(plan, settings, class, &method.columns(settings), half);
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
     let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views };

@@ -125,6 +125,11 @@ impl PassBuilder<'_> {
         self
     }
 
+    /// Several of them.
+    pub fn defines(self, all: &[(&str, String)]) -> Self {
+        all.iter().fold(self, |pass, (name, value)| pass.define(name, value))
+    }
+
     /// A virtual include, and the file that stands for it.
     pub fn provide(mut self, name: &str, file: &str) -> Self {
         self.pass.provided.push((name.to_owned(), file.to_owned()));

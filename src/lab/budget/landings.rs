@@ -9,6 +9,7 @@ use crate::{
         light::{self, Column},
     },
     renderer::{self, Dump, Frame, Providers, RenderError, Renderer},
+    settings::Settings,
 };
 
 /// Invocations along one side of the dispatch's work groups.
@@ -43,8 +44,8 @@ impl Method for Landings {
         &[Slot::Surface]
     }
 
-    fn columns(&self) -> &'static [Column] {
-        &[Column::Hit, Column::Flux]
+    fn columns(&self, _: &Settings) -> Vec<Column> {
+        vec![Column::Hit, Column::Flux]
     }
 
     fn stages(&self) -> &'static [&'static str] {

@@ -14,6 +14,12 @@ const SOURCE: [&str; 2] = ["paper", "platform"];
 /// The id of what a paper says outside its tables.
 const TEXT: &str = "text";
 
+/// Figures of pictures, which have no number in `tables.toml`: paper, figure, what its pictures are of.
+const PICTURES: [(&str, &str, &[&str]); 1] =
+    [("maps", "figure7", &["constant", "thin lens", "interpolated", "varying"])];
+/// What is reported of a picture.
+pub const PICTURE: &str = "gather";
+
 /// What a row is of: an N, or a scene or variant by name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
@@ -42,8 +48,8 @@ pub struct Figure {
     pub row: Label,
     /// Its key in `tables.toml`.
     pub column: String,
-    /// Its value.
-    pub value: f64,
+    /// Its value; none where the paper shows a picture.
+    pub value: Option<f64>,
 }
 
 /// A table or figure of a paper.
@@ -95,6 +101,11 @@ fn of_paper(name: &str, paper: &Table) -> Vec<Published> {
     let is_source = |key: &str| SOURCE.contains(&key) || AXES.contains(&key);
     let tables = paper.iter().filter_map(|(key, value)| Some((key, value.as_table()?)));
     let mut all: Vec<_> = tables.map(|(key, table)| published(key, figures(table, axis(paper, table)))).collect();
+    let pictures = PICTURES.iter().filter(|(of, ..)| *of == name);
+    all.extend(pictures.map(|(_, figure, rows)| {
+        let row = |row: &&str| Figure { row: Label::Words((*row).to_owned()), column: PICTURE.to_owned(), value: None };
+        published(figure, rows.iter().map(row).collect())
+    }));
     let outside = paper.iter().filter(|(key, value)| !is_source(key) && !value.is_table());
     let outside: Table = outside.map(|(key, value)| (key.clone(), value.clone())).collect();
     if !outside.is_empty() {
@@ -120,7 +131,7 @@ fn figures(table: &Table, axis: Option<&[Value]>) -> Vec<Figure> {
 
 /// A figure, or a list of them along the axis. Words (which variant was best) are no figures.
 fn of_value(row: &str, column: &str, value: &Value, axis: Option<&[Value]>) -> Vec<Figure> {
-    let figure = |row, value| Figure { row, column: column.to_owned(), value };
+    let figure = |row, value| Figure { row, column: column.to_owned(), value: Some(value) };
     match value {
         Value::Array(values) => {
             let numbers = values.iter().enumerate();

@@ -72,6 +72,13 @@ impl Canvas {
         ));
     }
 
+    /// The picture of a file beside this one.
+    pub fn picture(&mut self, file: &str, area: &Area) {
+        let Area { x, y, w, h } = area;
+        let file = escaped(file);
+        self.push(&format!("<image href=\"{file}\" x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\"/>"));
+    }
+
     /// A filled box.
     pub fn fill(&mut self, area: &Area, colour: &str, edge: &str) {
         let Area { x, y, w, h } = area;

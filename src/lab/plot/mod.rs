@@ -21,7 +21,7 @@ mod series;
 mod style;
 
 pub use build::{PlotError, chart};
-pub use canvas::{Canvas, Written};
+pub use canvas::{Anchor, Canvas, Written};
 pub use chart::{Bar, BarPanel, Body, Chart, Kind, Mark, Panel, Series};
 pub use draw::draw;
 pub use equal::{EqualRow, equal_rows};

@@ -2,7 +2,7 @@
 
 use crate::{
     gpu::FrameTimes,
-    lab::papers::Published,
+    lab::papers::{Figure, Label, Published},
     methods,
     settings::{SettingError, Settings},
 };
@@ -112,22 +112,29 @@ pub struct Variant {
     pub gather: &'static str,
     /// `maps.copy`.
     pub copy: &'static str,
+    /// `maps.splat`, where it is no column's.
+    pub splat: Option<&'static str>,
 }
 
-const COPY_2006: Variant = Variant { subject: Subject::Still, gather: "copy", copy: "16-32" };
+const COPY_2006: Variant = Variant { subject: Subject::Still, gather: "copy", copy: "16-32", splat: None };
 const COPY_32: Variant = Variant { copy: "32-32", ..COPY_2006 };
 const COPY_16: Variant = Variant { copy: "16-16", ..COPY_2006 };
 
 impl Variant {
     /// In words.
     pub fn name(self) -> String {
-        if self.gather == "copy" { format!("copy {}", self.copy) } else { self.gather.to_owned() }
+        match (self.gather, self.splat) {
+            (_, Some(splat)) => splat.to_owned(),
+            ("copy", _) => format!("copy {}", self.copy),
+            (gather, _) => gather.to_owned(),
+        }
     }
 
     /// Everything that it sets, for N² photons.
     pub fn set(self, side: u32) -> Vec<(String, String)> {
         let own = [("maps.gather", self.gather), ("maps.copy", self.copy)];
-        let pairs = SETUP.into_iter().chain(own).map(|(key, value)| (key.to_owned(), value.to_owned()));
+        let splat = self.splat.into_iter().flat_map(|splat| [("maps.traverse", "fetch"), ("maps.splat", splat)]);
+        let pairs = SETUP.into_iter().chain(own).chain(splat).map(|(key, value)| (key.to_owned(), value.to_owned()));
         pairs.chain([("light.side".to_owned(), side.to_string())]).collect()
     }
 
@@ -139,8 +146,20 @@ impl Variant {
     }
 }
 
-/// Who measures a column of a table, and in which part of the frame; else what is missing.
-pub fn runs(published: &Published, column: &str) -> Result<(Variant, Part), String> {
+/// N of the pictures of Fig. 7: the paper does not say; few enough for the noise that it shows.
+const PICTURED: u32 = 512;
+
+/// Who measures a figure, with which N, and in which part of the frame; else what is missing.
+pub fn runs(published: &Published, figure: &Figure) -> Result<(Variant, u32, Part), String> {
+    let (variant, part) = of_column(published, figure)?;
+    match figure.row {
+        Label::Number(n) => Ok((variant, n, part)),
+        Label::Words(_) => Ok((variant, PICTURED, part)),
+    }
+}
+
+fn of_column(published: &Published, figure: &Figure) -> Result<(Variant, Part), String> {
+    let column = figure.column.as_str();
     let gather = |gather| Variant { gather, ..COPY_32 };
     match (published.id.as_str(), column) {
         ("maps.table1" | "maps.table3", "render_photon_buffer") => Ok((COPY_2006, Part::Photons)),
@@ -162,6 +181,15 @@ pub fn runs(published: &Published, column: &str) -> Result<(Variant, Part), Stri
                 other => gather(known(other).ok_or("not run here yet")?),
             };
             Ok((Variant { subject: Subject::Animation, ..variant }, Part::Rate))
+        }
+        ("maps.figure7", _) => {
+            let splat = match figure.row.text().as_str() {
+                "constant" => "fixed",
+                "thin lens" => "thin-lens",
+                "interpolated" => "interpolated",
+                _ => "varying",
+            };
+            Ok((Variant { splat: Some(splat), ..gather("own") }, Part::Gather))
         }
         ("maps.table5", _) => Err("no scene with two lights round a model ships yet".to_owned()),
         _ => {

@@ -13,7 +13,7 @@ use crate::{
         Auto, LabError, Picture, Provenance,
         compare::judged_figure,
         exposure,
-        papers::{Label, Published},
+        papers::Published,
         timing::{self, Beat, Rounds, Timed},
     },
     methods,
@@ -134,9 +134,9 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
 fn wanted(published: &Published) -> (Vec<u32>, Vec<Variant>) {
     let (mut sides, mut variants) = (Vec::new(), Vec::new());
     for figure in &published.figures {
-        if let (Label::Number(side), Ok((variant, _))) = (&figure.row, columns::runs(published, &figure.column)) {
-            if !sides.contains(side) {
-                sides.push(*side);
+        if let Ok((variant, side, _)) = columns::runs(published, figure) {
+            if !sides.contains(&side) {
+                sides.push(side);
             }
             if !variants.contains(&variant) {
                 variants.push(variant);

@@ -4,6 +4,7 @@
 mod columns;
 mod measure;
 mod report;
+mod strip;
 
 use std::ops::ControlFlow;
 
@@ -48,7 +49,7 @@ pub type Watch<'w> = &'w mut dyn FnMut(&str) -> ControlFlow<()>;
 
 /// Whether any column of a table can be run.
 pub fn can_run(published: &Published) -> bool {
-    published.figures.iter().any(|figure| columns::runs(published, &figure.column).is_ok())
+    published.figures.iter().any(|figure| columns::runs(published, figure).is_ok())
 }
 
 /// Runs what can be run of a table.

@@ -7,6 +7,7 @@ use super::{
     Extent,
     columns::{self, Part},
     measure::{Measured, Run},
+    strip::strip,
 };
 use crate::{
     gpu::FrameTimes,
@@ -56,7 +57,7 @@ struct Row {
     row: Label,
     column: String,
     unit: &'static str,
-    published: f64,
+    published: Option<f64>,
     measured: Option<Known>,
     /// Measured over published.
     ratio: Option<f64>,
@@ -125,7 +126,7 @@ fn unit(published: &Published, column: &str) -> &'static str {
     match (published.id.as_str(), column) {
         ("maps.table4" | "maps.table5" | "lines.table2", _) => "fps",
         (_, name) if name.ends_with("fps") => "fps",
-        ("maps.table1" | "maps.table2" | "maps.table3" | "lines.table1", _) => "ms",
+        ("maps.table1" | "maps.table2" | "maps.table3" | "maps.figure7" | "lines.table1", _) => "ms",
         (_, "sun_disc_degrees") => "degrees",
         (_, "mental_ray_minutes") => "minutes",
         (_, "absorbed_per_metre") => "1/m",
@@ -139,7 +140,7 @@ type Place = (usize, Part);
 impl ReproduceReport {
     /// Of a table that nothing here can run.
     pub fn unrun(published: &Published, extent: &Extent) -> Self {
-        let why = |figure: &Figure| columns::runs(published, &figure.column).err();
+        let why = |figure: &Figure| columns::runs(published, figure).err();
         Self {
             schema: "nephroid.reproduce/1",
             id: published.id.clone(),
@@ -195,13 +196,16 @@ impl ReproduceReport {
         }
     }
 
-    /// Writes `ID.json` and a picture of each variant and N.
+    /// Writes `ID.json`, a picture of each variant and N, and `ID.svg`, where they stand side by side.
     pub fn write_files(&self, folder: &mut OutFolder) -> Result<(), LabError> {
         let json = self.write(Format::Json);
         folder.write(&format!("{}.json", self.id), |out| std::io::Write::write_all(out, &json?))?;
         for (file, m) in &self.pictures {
             let png = to_png(&m.layers, "radiance", m.exposure_ev, &m.provenance.attributes())?;
             folder.write(file, |out| std::io::Write::write_all(out, &png))?;
+        }
+        if let Some(strip) = strip(&self.id, &self.pictures) {
+            folder.write(&format!("{}.svg", self.id), |out| std::io::Write::write_all(out, strip.as_bytes()))?;
         }
         Ok(())
     }
@@ -242,7 +246,7 @@ impl Row {
                 let (m, series) = (&run.all[at], &run.timed.series[at]);
                 let samples = series.frames.iter().map(|frame| part.of(&m.stages, frame)).collect();
                 let measured = Known::from(Summary::of(samples));
-                let ratio = Some(measured.value / figure.value).filter(|ratio| ratio.is_finite());
+                let ratio = figure.value.map(|published| measured.value / published).filter(|ratio| ratio.is_finite());
                 let relmse = m.relmse.map(Known::from);
                 let (kept, points, none) = (m.kept, m.points, Self::missing(published, figure, None));
                 Self { measured: Some(measured), ratio, relmse, kept, points, ..none }
@@ -253,8 +257,7 @@ impl Row {
 
 /// Where a figure was measured, or why it was not.
 fn place(published: &Published, figure: &Figure, run: &Run) -> Result<Place, String> {
-    let (variant, part) = columns::runs(published, &figure.column)?;
-    let Label::Number(n) = figure.row else { return Err("its row is no N".to_owned()) };
+    let (variant, n, part) = columns::runs(published, figure)?;
     let found = run.all.iter().position(|m| m.variant == variant && m.side == n);
     let why = || run.left_out.iter().find(|(side, _)| *side == n).map(|(_, why)| why.clone());
     found.map(|at| (at, part)).ok_or_else(|| why().unwrap_or_else(|| "was not run".to_owned()))
@@ -281,7 +284,7 @@ impl Shape {
         let take = |(at, part): Place| move |frame: &FrameTimes| part.of(&run.all[at].stages, frame);
         let [a, b] = [from.1, to.1].map(take);
         let measured = run.timed.ratio((from.1.0, &a), (to.1.0, &b));
-        let published = to.0.value / from.0.value;
+        let published = to.0.value? / from.0.value?;
         let name = |figure: &Figure| format!("{} {}", figure.column, figure.row.text());
         published.is_finite().then(|| Self {
             kind,
@@ -335,7 +338,8 @@ impl Report for ReproduceReport {
             let kept = r.kept.map_or(Cell::None, |kept| Cell::Real(kept, 4));
             let points = r.points.map_or(Cell::None, Cell::Count);
             let missing = r.missing.as_ref().map_or(Cell::None, Cell::text);
-            let (row, published) = (Cell::text(r.row.text()), Cell::text(r.published.to_string()));
+            let (row, published) =
+                (Cell::text(r.row.text()), r.published.map_or(Cell::None, |p| Cell::text(p.to_string())));
             vec![
                 row,
                 Cell::text(&r.column),
@@ -415,7 +419,7 @@ impl Default for CatalogueReport {
 
 impl Entry {
     fn of(published: &Published) -> Self {
-        let why = published.figures.iter().map(|figure| columns::runs(published, &figure.column).err());
+        let why = published.figures.iter().map(|figure| columns::runs(published, figure).err());
         let why: Vec<Option<String>> = why.collect();
         let mut missing: Vec<String> = why.iter().flatten().cloned().collect();
         missing.sort();

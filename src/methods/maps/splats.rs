@@ -1,8 +1,9 @@
 //! How large splats are, and into which level of the map they go (Wyman 2008, section 3.3).
 
-use super::{Axes, SPLAT_SIZE};
+use super::{Axes, SIDE, SPLAT, SPLAT_SIZE};
 use crate::{
     gpu::PassBuilder,
+    passes::light::Column,
     settings::{Choice, Real, Settings},
 };
 
@@ -48,13 +49,21 @@ struct SplatPush {
 pub struct Splats {
     /// Texels of the map.
     pub side: u32,
-    varying: bool,
+    /// `maps.splat`.
+    kind: &'static str,
+    /// Texels: of fixed splats, and of the narrowest of several.
+    diameter: u32,
     multires: bool,
 }
 
+/// Diameters that are drawn of `interpolated` splats, each twice the one before.
+const DIAMETERS: usize = 4;
+
 impl Splats {
-    pub fn of(axes: Axes<'_>, side: u32) -> Self {
-        Self { side, varying: axes.splat == "varying", multires: axes.target == "multires" }
+    pub fn of(axes: Axes<'_>, settings: &Settings) -> Self {
+        let kind = SPLAT.words.iter().find(|word| **word == axes.splat).expect("the axis has one of its words");
+        let (side, diameter) = (settings.whole(&SIDE), settings.whole(&SPLAT_SIZE));
+        Self { side, kind, diameter, multires: axes.target == "multires" }
     }
 
     /// Layers of the map's image for each view that receives.
@@ -62,24 +71,42 @@ impl Splats {
         if self.multires { LEVELS } else { 1 }
     }
 
-    /// The file of the slot `surface`.
-    pub fn surface(self) -> &'static str {
-        if self.multires { "maps/surface_multires.glsl" } else { "maps/surface.glsl" }
+    /// Names of the maps: one for each size of splat that the eye interpolates between.
+    pub fn maps(self) -> &'static [&'static str] {
+        const MAPS: [&str; DIAMETERS] = ["maps/map", "maps/map.1", "maps/map.2", "maps/map.3"];
+        if self.kind == "interpolated" { &MAPS } else { &MAPS[..1] }
     }
 
-    /// Tells a pass that splats photons of a light.
-    pub fn tell<'p>(self, settings: &Settings, light: usize, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+    /// What the eye is told.
+    pub fn defines(self) -> Vec<(&'static str, String)> {
+        match self.kind {
+            "interpolated" => vec![("NARROWEST", format!("{:.1}", f64::from(self.diameter)))],
+            _ if self.multires => vec![("LEVELS", LEVELS.to_string())],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Columns that the shaders that splat read.
+    pub fn columns(self) -> &'static [Column] {
+        if self.kind == "thin-lens" { &[Column::Hit, Column::Flux, Column::Exit] } else { &[Column::Hit, Column::Flux] }
+    }
+
+    /// Tells a pass that splats photons of a light into the map of that number.
+    pub fn tell<'p>(self, settings: &Settings, light: usize, map: usize, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let varying = ["varying", "thin-lens"].contains(&self.kind);
         let push = SplatPush {
             side: self.side as i32,
-            diameter: settings.whole(&SPLAT_SIZE) as f32,
+            diameter: (self.diameter << map) as f32,
             threshold: settings.real(&LEVEL_THRESHOLD).unwrap_or(f64::INFINITY) as f32,
             light: light as u32,
         };
         let wanted = [
-            ("VARYING", self.varying),
+            ("VARYING", varying),
             ("MULTIRES", self.multires),
-            ("LEVEL_CEIL", self.varying && settings.choice(&LEVEL) == "ceil"),
-            ("FOOTPRINT_AREA", self.varying && settings.choice(&FOOTPRINT) == "area"),
+            ("LEVEL_CEIL", varying && settings.choice(&LEVEL) == "ceil"),
+            ("FOOTPRINT_AREA", self.kind == "varying" && settings.choice(&FOOTPRINT) == "area"),
+            ("THIN_LENS", self.kind == "thin-lens"),
+            ("COUNTED", self.kind == "interpolated"),
         ];
         let pass = wanted.into_iter().filter(|(_, on)| *on).fold(pass, |pass, (name, _)| pass.define(name, 1));
         pass.push(&push)

@@ -1,3 +1,0 @@
-// Slot `surface` from a map in levels: each in its corner of a layer.
-#define LEVELS 4
-#include "maps/surface.glsl"
