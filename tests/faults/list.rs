@@ -21,8 +21,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "colour bands swapped",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(photon_flux(flux.rgb) / norm, p, layer);",
-        new: "s = Splat(photon_flux(flux.bgr) / norm, p, layer);",
+        old: "s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);",
+        new: "s = Splat(flux.bgr / norm, 1.0 / norm, p, d, side, layer);",
         check: &FLAT_WATER,
     },
     Fault {
@@ -42,8 +42,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "half-texel shift",
         file: "maps/surface.glsl",
-        old: "vec2 at = xy01 * vec2(size) - 0.5;",
-        new: "vec2 at = xy01 * vec2(size);",
+        old: "vec2 at = at01 * reach - 0.5;",
+        new: "vec2 at = at01 * reach;",
         check: &CENTRE,
     },
     Fault {
@@ -56,15 +56,15 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "map rows flipped",
         file: "maps/photon_splat.glsl",
-        old: "splat_snap(xy01.y * float(side))",
-        new: "splat_snap((1.0 - xy01.y) * float(side))",
+        old: "splat_snap(l.xy01.y * reach)",
+        new: "splat_snap((1.0 - l.xy01.y) * reach)",
         check: &TRUTH,
     },
     Fault {
         name: "splat weights sum to 1.02",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(photon_flux(flux.rgb) / norm, p, layer);",
-        new: "s = Splat(1.02 * photon_flux(flux.rgb) / norm, p, layer);",
+        old: "s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);",
+        new: "s = Splat(1.02 * flux / norm, 1.0 / norm, p, d, side, layer);",
         check: &DEPOSITED,
     },
     Fault {
@@ -77,8 +77,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "NaN in the splats",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(photon_flux(flux.rgb) / norm, p, layer);",
-        new: "s = Splat(photon_flux(flux.rgb) / sqrt(-norm), p, layer);",
+        old: "s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);",
+        new: "s = Splat(flux / sqrt(-norm), 1.0 / norm, p, d, side, layer);",
         check: &DEPOSITED,
     },
     Fault {
