@@ -94,7 +94,7 @@ fn compare(a: &RefCell<Renderer>, b: &RefCell<Renderer>) -> Result<Vec<(f64, Ver
     let mut found = Vec::new();
     for seed in 0..COMPARISONS {
         let mut both = [variant("plain", a), variant("other", b)];
-        let rounds = Rounds { rounds: ROUNDS, most_warmup: 20, seed };
+        let rounds = Rounds { rounds: ROUNDS, most_warmup: 20, seed, until: None };
         let timed = rounds.run(&mut both, &mut |_| ControlFlow::Continue(()))?;
         let ratio = timed.span_ratio(0, 1);
         found.push((ratio.interval.value, ratio.verdict));

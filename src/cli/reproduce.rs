@@ -32,7 +32,7 @@ pub struct ReproduceArgs {
     quick: bool,
     #[command(flatten)]
     device: DeviceArgs,
-    /// The most time for frames and truth; N that would take longer are left out, and said [default: 600]
+    /// The most time for frames and truth; N that would take longer are left out, rounds end when it is up, and both are said [default: 600]
     #[arg(long, value_name = "S", value_parser = parse_seconds, conflicts_with = "quick")]
     max_seconds: Option<f64>,
     #[command(flatten)]

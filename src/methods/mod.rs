@@ -9,14 +9,28 @@ use crate::{
     names::NoSuch,
     passes::{
         PlanError,
+        account::Account,
         extents::Receiver,
         eye::SurfaceProvider,
         light::{Column, Emission, Photons},
     },
-    scene::Scene,
+    scene::{Region, Scene},
     settings::{Setting, Settings},
     view::Extent,
 };
+
+/// What a picture came of, for those who judge it.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome<'a> {
+    /// Its scene.
+    pub scene: &'a Scene,
+    /// What the camera is there for: the region, or the scene's extent.
+    pub receiver: &'a Region,
+    /// As set.
+    pub settings: &'a Settings,
+    /// Where its photons went.
+    pub account: &'a Account,
+}
 
 /// What a method fills.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,6 +151,11 @@ pub trait Method: Sync {
     }
     /// Its stages, which `plan` lists as left out where no photon can come.
     fn stages(&self) -> &'static [&'static str];
+    /// What its picture does not show well, and the remedy.
+    fn warnings(&self, _: &Outcome<'_>) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Where its error comes from: the pictures of `nephroid budget`, from the truth of all paths to the picture as it
     /// comes.
     fn chain(&self) -> &'static [Link] {

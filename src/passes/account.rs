@@ -74,6 +74,11 @@ impl Account {
         self.flux_w[0]
     }
 
+    /// Photons that the method takes.
+    pub fn valid(&self) -> u64 {
+        self.counts[1]
+    }
+
     /// Flux of the photons that the method takes, W.
     pub fn valid_w(&self) -> f64 {
         self.flux_w[1]

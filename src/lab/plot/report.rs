@@ -4,15 +4,19 @@ use serde::Serialize;
 
 use super::{
     build::figure,
-    chart::{Body, Chart, Kind},
+    chart::{Body, Chart, Kind, Mark, side},
     equal::{EqualRow, equal_rows},
     files::csv_table,
     read::Results,
+    result::Estimate,
 };
 use crate::{
     lab::{Cell, Report, Table},
     stats::Number,
 };
+
+/// Marks up to which each has a row of its figures; those of more stand in the CSV beside the plot.
+const LISTED: usize = 100;
 
 /// Of `nephroid plot`, schema `nephroid.plot/1`.
 #[derive(Debug, Serialize)]
@@ -27,7 +31,7 @@ pub struct PlotReport {
     /// Points that were left out.
     left_out: Vec<String>,
     #[serde(skip)]
-    bars: Option<Table>,
+    drawn: Table,
 }
 
 /// A series that was drawn.
@@ -68,7 +72,10 @@ impl PlotReport {
             equal,
             caption: chart.caption.clone(),
             left_out: results.notes.clone(),
-            bars: matches!(chart.body, Body::Bars(..)).then(|| csv_table(chart)),
+            drawn: match chart.body {
+                Body::Marks(_) => figures(chart),
+                Body::Bars(..) => csv_table(chart),
+            },
         }
     }
 
@@ -111,11 +118,43 @@ impl PlotReport {
     }
 }
 
+/// What is drawn, to be read: a row a mark, values with their intervals to the digits that count.
+fn figures(chart: &Chart) -> Table {
+    let Body::Marks(panels) = &chart.body else { return csv_table(chart) };
+    let with_error = chart.kind == Kind::ErrorTime;
+    let row = |title: &str, series: &super::Series, mark: &Mark| {
+        let mut row = [title, &series.name].map(Cell::text).to_vec();
+        row.push(if mark.photons > 0 { Cell::text(side(mark.photons)) } else { Cell::None });
+        let (time, error) = if with_error { (&mark.x, Some(&mark.y)) } else { (&mark.y, None) };
+        row.extend([time].into_iter().chain(error).flat_map(value_and_interval));
+        row.push(Cell::text(&series.device));
+        row
+    };
+    let mut rows = Vec::new();
+    for panel in panels {
+        for series in &panel.series {
+            rows.extend(series.marks.iter().map(|mark| row(&panel.title, series, mark)));
+        }
+    }
+    let error: &[&str] = if with_error { &["error", "error interval"] } else { &[] };
+    let columns = ["scene", "series", "N", "ms", "ms interval"].iter().chain(error).chain(&["device"]);
+    Table { name: "figures", columns: columns.copied().collect(), rows }
+}
+
+fn value_and_interval(estimate: &Estimate) -> [Cell; 2] {
+    let ends = estimate.low.zip(estimate.high);
+    let interval =
+        ends.map_or(Cell::None, |(low, high)| Cell::text(format!("{} to {}", figure(low.0), figure(high.0))));
+    [Cell::text(figure(estimate.value.0)), interval]
+}
+
 impl Report for PlotReport {
     fn tables(&self) -> Vec<Table> {
-        match &self.bars {
-            Some(bars) => vec![bars.clone()],
-            None => vec![self.series_table(), self.equal_table()],
+        let (drawn, bars) = (self.drawn.clone(), self.series.is_empty());
+        match drawn.rows.len() {
+            _ if bars => vec![drawn],
+            0..=LISTED => vec![drawn, self.series_table(), self.equal_table()],
+            _ => vec![self.series_table(), self.equal_table()],
         }
     }
 

@@ -9,6 +9,7 @@ use super::{Measured, Provenance, Run, devices::DeviceRow, provenance::exposure}
 use crate::{
     gpu::FrameTimes,
     image::Layers,
+    methods::Outcome,
     passes::{
         account::{Account, BUCKETS},
         light::LAYERS,
@@ -230,7 +231,13 @@ const MISSING: f64 = 0.01;
 
 /// What a reader of the numbers must know of the light.
 pub(in crate::lab) fn warnings(account: &Account, job: &Job) -> Vec<String> {
-    outside_map(account, &job.camera).into_iter().chain(no_layer(account, &job.settings)).collect()
+    let (scene, settings) = (&job.scene, &job.settings);
+    let receiver = if job.camera == "region" { &scene.region } else { &scene.extent };
+    let shown = Outcome { scene, receiver, settings, account };
+    let methods = job.providers.methods();
+    let of_methods = methods.iter().flat_map(|method| method.warnings(&shown));
+    let of_account = [outside_map(account, &job.camera), no_layer(account, settings)];
+    of_account.into_iter().flatten().chain(of_methods).collect()
 }
 
 /// Share of the flux that arrives at receivers. Without any light it is no number, and above nothing.

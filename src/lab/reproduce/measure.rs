@@ -1,6 +1,11 @@
 //! The runs: one renderer a variant and N, as many as time and memory allow, timed in rounds, then judged.
 
-use std::{cell::Cell, ops::ControlFlow, sync::Arc, time::Instant};
+use std::{
+    cell::Cell,
+    ops::ControlFlow,
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use super::{
     Extent, Watch,
@@ -32,6 +37,8 @@ const GROWTH: f64 = 4.0;
 /// Of the device's memory that all renderers together may take.
 const MEMORY: f64 = 0.5;
 const SEED: u64 = 1;
+/// s: no machine waits as long, and any clock can add it.
+const LONGEST: f64 = 1e9;
 /// Place of the photons that arrived in an account.
 const VALID: usize = 1;
 
@@ -77,15 +84,22 @@ struct Ready {
 }
 
 pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, watch: Watch) -> Result<Run, LabError> {
+    let started = Instant::now();
+    let late = |seconds: f64| started + Duration::from_secs_f64(seconds.min(LONGEST));
     let (mut ready, left_out) = prepare(gpu, published, extent, watch)?;
     let frames = (ready.len() as u32) * extent.rounds;
     let say = format!("timing {} variants, {frames} frames, on {}", ready.len(), gpu.info().label());
-    let timed = time(&mut ready, extent.rounds, &mut |first| watch(if first { &say } else { "" }))?;
-    let warnings = timed.warnings(f64::from(gpu.info().timestamp_period) * 1e-6);
+    let rounds =
+        Rounds { rounds: extent.rounds, most_warmup: MOST_WARMUP, seed: SEED, until: Some(late(extent.seconds)) };
+    let timed = time(&mut ready, rounds, &mut |first| watch(if first { &say } else { "" }))?;
+    let mut warnings = timed.warnings(f64::from(gpu.info().timestamp_period) * 1e-6);
+    warnings.extend(cut_short(&timed, extent));
     let all = ready.into_iter().map(|ready| read(gpu, ready)).collect::<Result<Vec<_>, _>>()?;
     let (pictures, mut all): (Vec<Picture>, Vec<Measured>) = all.into_iter().unzip();
     let mut begun = false;
-    let references = Auto { layer: LAYER, seconds: extent.truth_seconds, store }.references(&pictures, &mut |_| {
+    let left = late(extent.seconds + extent.truth_seconds).saturating_duration_since(Instant::now()).as_secs_f64();
+    let seconds = extent.truth_seconds.min(left);
+    let references = Auto { layer: LAYER, seconds, store }.references(&pictures, &mut |_| {
         let first = !std::mem::replace(&mut begun, true);
         watch(if first { "making the truth that the pictures are judged by" } else { "" })
     })?;
@@ -94,6 +108,15 @@ pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, wat
     }
     let reference = references.first().map(|truth| truth.file.clone()).unwrap_or_default();
     Ok(Run { all, timed, left_out, reference, warnings })
+}
+
+/// Fewer rounds than were asked for.
+fn cut_short(timed: &Timed, extent: &Extent) -> Option<String> {
+    let (done, asked) = (timed.rounds(), extent.rounds);
+    let remedy = if extent.quick { "leave --quick out" } else { "raise --max-seconds" };
+    (done < asked).then(|| {
+        format!("the time was up after {done} of {asked} rounds: figures are of those, their intervals wide; {remedy}")
+    })
 }
 
 /// The account and the picture of the frame that was timed.
@@ -153,10 +176,11 @@ fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> R
     let subject = variants.first().map_or(Subject::Still, |variant| variant.subject);
     let scene = Arc::new(Scene::load(subject.scene(), &[]).expect("a shipped scene loads: a test loads them all"));
     let (mut ready, mut left_out) = (Vec::new(), Vec::new());
-    let (mut spent, mut last, mut bytes) = (0.0, 0.0, 0);
+    let started = Instant::now();
+    let (mut frames_s, mut last, mut bytes) = (0.0, 0.0, 0);
     for side in sides {
         let frames = f64::from(extent.rounds + MOST_WARMUP);
-        let ahead = spent + frames * GROWTH * last;
+        let ahead = started.elapsed().as_secs_f64() + frames_s + frames * GROWTH * last;
         let too_large = format!("--quick takes N up to {}", extent.most_side);
         let why = if side > extent.most_side {
             Some(too_large)
@@ -171,7 +195,7 @@ fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> R
                 Ok((made, taken, frame_s)) => {
                     ready.extend(made);
                     (bytes, last) = (taken, frame_s);
-                    spent += frames * frame_s;
+                    frames_s += frames * frame_s;
                     None
                 }
                 Err(why) => Some(why),
@@ -224,7 +248,11 @@ fn of_side(
     Ok(Ok((made, bytes, seconds)))
 }
 
-fn time(ready: &mut [Ready], rounds: u32, watch: &mut dyn FnMut(bool) -> ControlFlow<()>) -> Result<Timed, LabError> {
+fn time(
+    ready: &mut [Ready],
+    rounds: Rounds,
+    watch: &mut dyn FnMut(bool) -> ControlFlow<()>,
+) -> Result<Timed, LabError> {
     let now = Cell::new(0); // every variant renders the same moment in a round
     let mut list = Vec::new();
     for ready in ready {
@@ -232,13 +260,13 @@ fn time(ready: &mut [Ready], rounds: u32, watch: &mut dyn FnMut(bool) -> Control
         let name = format!("{}, {}² photons", ready.variant.name(), ready.side);
         let stages = ready.renderer.stages();
         let frame = move || {
-            let frame = Frame { time: subject.time(now.get(), rounds), ..Frame::default() };
+            let frame = Frame { time: subject.time(now.get(), rounds.rounds), ..Frame::default() };
             Ok(ready.renderer.frame(&frame)?)
         };
         list.push(timing::Variant { name, stages, frame: Box::new(frame) });
     }
     let mut begun = false;
-    Rounds { rounds, most_warmup: MOST_WARMUP, seed: SEED }.run(&mut list, &mut |beat| {
+    rounds.run(&mut list, &mut |beat| {
         if let Beat::Timed { round, .. } = beat {
             now.set(round);
         }

@@ -22,9 +22,10 @@ pub struct Extent {
     pub most_side: u32,
     /// Timed frames of each variant.
     pub rounds: u32,
-    /// For all frames together, s; what does not fit is left out, and said.
+    /// For all frames together, s. N that would take longer are left out, and where it is up no round is added; both are
+    /// said. One round of the smallest N is always made.
     pub seconds: f64,
-    /// For the truth, s.
+    /// For the truth, s: less where the frames took more than theirs.
     pub truth_seconds: f64,
     /// Of the picture, pixels.
     pub size: [u32; 2],

@@ -184,7 +184,7 @@ impl ReproduceReport {
             deviations: first.map(|m| m.variant.subject.deviations()).unwrap_or_default(),
             device,
             size: Some(extent.size),
-            repeats: Some(extent.rounds),
+            repeats: Some(run.timed.rounds()),
             reference: Some(run.reference.clone()).filter(|file| !file.is_empty()),
             settings: first.map(|m| m.provenance.settings().clone()).unwrap_or_default(),
             photons: run.all.iter().map(Arrived::of).collect(),

@@ -1,7 +1,9 @@
 //! A sweep: scenes × methods × settings, every point rendered, timed and held against its truth, and kept by content.
 //!
 //! What is kept under a point's key is never stale: the key is of everything that the point was made from, its scene as
-//! resolved, the settings in force, the device, the reference, the shaders that its plan compiles, and this program.
+//! resolved, the settings in force, the device, the reference, the shaders that its plan compiles, and this program: its
+//! version, its compiler, its dependencies and a hash of its sources, but for those that only show (`scripts/build.rs`
+//! lists them). A commit that touches none of these leaves every point as it is.
 //! Each point is an entry of its own, replaced whole: a process may be killed at any moment, and shards share nothing
 //! but the store and the locks of their host.
 
@@ -193,7 +195,7 @@ impl Bench<'_> {
         };
         let (device, sweep) = (self.gpu.info(), self.sweep);
         let timed = format!("{} {} {}", sweep.rounds, sweep.layer, sweep.seconds);
-        let program = [SCHEMA, env!("CARGO_PKG_VERSION"), env!("NEPHROID_COMMIT")];
+        let program = [SCHEMA, env!("CARGO_PKG_VERSION"), env!("NEPHROID_CODE"), env!("NEPHROID_RUSTC")];
         let about = [&spec.content(), &timed, &device.name, &device.driver, &device.api, &shaders];
         (Key::of(program.into_iter().chain(about.map(String::as_str))), planned)
     }

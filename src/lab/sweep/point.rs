@@ -73,7 +73,7 @@ impl Bench<'_> {
         let (quiet, alone) = host.quiet(patience, go_on)?;
         let render = || renderer.frame(&frame).map_err(LabError::from);
         let mut variants = [Variant { name: "frame".to_owned(), stages, frame: Box::new(render) }];
-        let rounds = Rounds { rounds: self.sweep.rounds, most_warmup: MOST_WARMUP, seed: 0 };
+        let rounds = Rounds { rounds: self.sweep.rounds, most_warmup: MOST_WARMUP, seed: 0, until: None };
         let timed = rounds.run(&mut variants, &mut |_| go_on())?;
         drop((variants, quiet));
 

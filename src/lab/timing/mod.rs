@@ -11,7 +11,7 @@ mod summary;
 mod tests;
 mod warnings;
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, time::Instant};
 
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_pcg::Pcg64Mcg;
@@ -35,6 +35,8 @@ pub struct Rounds {
     pub most_warmup: u32,
     /// Of the order within the rounds, and of the bootstrap.
     pub seed: u64,
+    /// When the time is up: from then on no frame begins, but those of the first round. A round that it cuts is left out.
+    pub until: Option<Instant>,
 }
 
 /// Renders one frame of a variant.
@@ -110,7 +112,7 @@ impl Rounds {
                 if stats::is_settled(&spans, WINDOW, SETTLED) {
                     break true;
                 }
-                if spans.len() >= self.most_warmup as usize {
+                if spans.len() >= self.most_warmup as usize || self.is_late() {
                     break false;
                 }
                 at(Beat::Warmup { variant: index })?;
@@ -122,15 +124,23 @@ impl Rounds {
         let mut random = Pcg64Mcg::seed_from_u64(self.seed);
         let mut order: Vec<usize> = (0..variants.len()).collect();
         let before = Cores::now();
-        for round in 0..self.rounds {
+        'rounds: for round in 0..self.rounds {
             order.shuffle(&mut random);
             for &variant in &order {
+                if round > 0 && self.is_late() {
+                    series.iter_mut().for_each(|s| s.frames.truncate(round as usize));
+                    break 'rounds;
+                }
                 at(Beat::Timed { round, variant })?;
                 series[variant].frames.push((variants[variant].frame)()?);
             }
         }
         let others = before.and_then(|before| Cores::now()?.others_since(&before));
         Ok(Timed { series, others, seed: self.seed })
+    }
+
+    fn is_late(&self) -> bool {
+        self.until.is_some_and(|until| Instant::now() >= until)
     }
 }
 
@@ -165,6 +175,11 @@ impl Timed {
     pub fn span_ratio(&self, a: usize, b: usize) -> Ratio {
         let span: &Take = &|frame| frame.span_ms;
         self.ratio((a, span), (b, span))
+    }
+
+    /// Timed frames of each.
+    pub fn rounds(&self) -> u32 {
+        self.series.first().map_or(0, |series| series.frames.len() as u32)
     }
 
     /// What makes these times less than they seem, and what to do about it. `tick_ms`: the device's clock.

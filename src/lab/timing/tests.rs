@@ -1,6 +1,6 @@
 //! On a made-up machine: what is called, how seldom it is called wrongly, and what is warned of.
 
-use std::{cell::RefCell, ops::ControlFlow};
+use std::{cell::RefCell, ops::ControlFlow, time::Duration};
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -8,6 +8,8 @@ use rand_pcg::Pcg64Mcg;
 use super::*;
 
 const TICK_MS: f64 = 1e-6;
+/// More than a few calls take on a busy machine.
+const LATER: Duration = Duration::from_millis(500);
 
 /// A frame of two passes, in whole ticks of a clock of 1 ns.
 fn frame(ms: f64) -> FrameTimes {
@@ -29,7 +31,9 @@ fn time(rounds: u32, variants: usize, seed: u64, ms: impl Fn(usize, usize) -> f6
         Variant { name: format!("v{variant}"), stages: vec!["a".into(), "b".into()], frame: Box::new(render) }
     };
     let mut list: Vec<_> = (0..variants).map(frame_of).collect();
-    let timed = Rounds { rounds, most_warmup: 20, seed }.run(&mut list, &mut |_| ControlFlow::Continue(())).unwrap();
+    let timed = Rounds { rounds, most_warmup: 20, seed, until: None }
+        .run(&mut list, &mut |_| ControlFlow::Continue(()))
+        .unwrap();
     drop(list);
     (timed, called.into_inner())
 }
@@ -119,11 +123,37 @@ fn what_was_not_measured_shows_nothing() {
     assert!(none.series[0].stage("no such").is_none());
 }
 
+/// Time that is up before anything began leaves the first round whole; up in the middle of a later one, those before it.
+#[test]
+fn rounds_end_when_the_time_is_up() {
+    for (whole, from) in [(1, 0), (2, 5)] {
+        let drawn = std::cell::Cell::new(0);
+        let until = std::time::Instant::now() + if from == 0 { Duration::ZERO } else { LATER };
+        let variant = |name: &str| {
+            let render = || {
+                drawn.set(drawn.get() + 1);
+                if drawn.get() == from {
+                    std::thread::sleep(LATER);
+                }
+                Ok(frame(1.0))
+            };
+            Variant { name: name.into(), stages: vec![], frame: Box::new(render) as RenderFrame<'_> }
+        };
+        let mut two = [variant("a"), variant("b")];
+        let rounds = Rounds { rounds: 9, most_warmup: 0, seed: 0, until: Some(until) };
+        let timed = rounds.run(&mut two, &mut |_| ControlFlow::Continue(())).unwrap();
+        drop(two);
+        assert_eq!(timed.rounds(), whole);
+        assert!(timed.series.iter().all(|series| series.frames.len() == whole as usize), "each as often");
+        assert_eq!(drawn.get(), from.max(2));
+    }
+}
+
 #[test]
 fn whoever_watches_can_stop_it() {
     let render = || Ok(frame(1.0));
     let mut one = [Variant { name: "a".into(), stages: vec![], frame: Box::new(render) }];
-    let stopped = Rounds { rounds: 3, most_warmup: 3, seed: 0 }.run(&mut one, &mut |beat| {
+    let stopped = Rounds { rounds: 3, most_warmup: 3, seed: 0, until: None }.run(&mut one, &mut |beat| {
         if matches!(beat, Beat::Timed { round: 1, .. }) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     assert!(matches!(stopped, Err(LabError::Interrupted)));

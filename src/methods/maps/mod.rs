@@ -5,6 +5,7 @@
 mod axes;
 mod copied;
 mod hierarchy;
+mod sparse;
 mod splats;
 mod sums;
 mod views;
@@ -15,7 +16,7 @@ use hierarchy::Hierarchy;
 use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
 use sums::Fixed;
 
-use super::{Job, Link, Method, Planned, Provided, Shown, Slot};
+use super::{Job, Link, Method, Outcome, Planned, Provided, Shown, Slot};
 use crate::{
     gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, PassBuilder, Resource, Topology},
     passes::{
@@ -132,6 +133,10 @@ impl Method for Maps {
 
     fn slots(&self) -> &'static [Slot] {
         &[Slot::Surface]
+    }
+
+    fn warnings(&self, shown: &Outcome<'_>) -> Vec<String> {
+        sparse::warning(shown).into_iter().collect()
     }
 
     fn needs(&self, settings: &Settings) -> Vec<Feature> {

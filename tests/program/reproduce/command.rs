@@ -1,9 +1,17 @@
 //! The command, from outside.
 
-use std::process::{Command, Output};
+use std::{
+    fs,
+    io::{BufRead, BufReader},
+    process::{Command, Output, Stdio},
+    time::{Duration, Instant},
+};
 
 use nephroid::lab::papers;
 use serde_json::Value;
+
+/// For what takes some seconds, on a machine where others work.
+const AMPLE: Duration = Duration::from_secs(60);
 
 fn reproduce(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_nephroid"));
@@ -46,4 +54,45 @@ fn what_is_typed_wrongly_is_said() {
         assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {text}");
         assert!(text.contains(what) && output.stdout.is_empty(), "{arguments:?}: {text}");
     }
+}
+
+/// A second is less than the rounds of the smallest N take: they end early, what they gave is kept and said to be less.
+#[test]
+fn time_that_is_up_ends_rounds_and_the_files_say_so() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    let started = Instant::now();
+    let report = json(&["maps.table2", "--max-seconds", "1", "--format", "json", "--out", out.to_str().unwrap()]);
+    assert!(started.elapsed() < AMPLE, "{:?}", started.elapsed());
+    let repeats = report["repeats"].as_u64().unwrap();
+    assert!((1..15).contains(&repeats), "{repeats}");
+    let said = report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap());
+    assert!(
+        said.clone().any(|w| w.contains(&format!("after {repeats} of 15 rounds"))),
+        "{:?}",
+        said.collect::<Vec<_>>()
+    );
+    assert!(report["rows"].as_array().unwrap().iter().any(|row| row["measured"]["value"].is_number()));
+    let mut names: Vec<_> =
+        fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["copy-16-16-256.png", "copy-16-32-256.png", "copy-32-32-256.png", "maps.table2.json"]);
+    let written: Value = serde_json::from_slice(&fs::read(out.join("maps.table2.json")).unwrap()).unwrap();
+    assert_eq!(written, report);
+}
+
+#[test]
+fn an_interrupt_leaves_no_file() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_nephroid"));
+    command.args(["reproduce", "maps.table2", "--quick", "--out"]).arg(&out);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(said.any(|line| line.unwrap().starts_with("timing")), "it began");
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let started = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", said.map_while(Result::ok).collect::<String>());
+    assert!(started.elapsed() < AMPLE && output.stdout.is_empty() && !out.exists());
 }
