@@ -16,8 +16,9 @@ use super::{
 
 /// Splats of a texel are added in another order: float32 sums of up to some hundred addends.
 const ORDER: f64 = 1e-6;
-/// On a GPU, sums and products may be fused, and a photon by a texel's edge fall on its other side.
-const FUSED: u64 = 3;
+/// On a GPU, sums and products may be fused, and a photon by a texel's edge fall on its other side: measured 0.25 % of the points
+/// of `ring` (NVIDIA H100), whose photons lie in rows.
+const FUSED: f64 = 5e-3;
 
 /// Points that each step takes and the gather draws, as the device counts them.
 fn counted(renderer: &mut Renderer) -> Vec<u64> {
@@ -41,7 +42,7 @@ fn both(gpu: &Gpu, scene: &str, side: &str, (gather, merge): (&str, Merge), map_
 #[test]
 fn points_of_every_level_are_those_of_the_listings() {
     let gpu = gpu();
-    let allowed = if gpu.info().is_software() { 0 } else { FUSED };
+    let allowed = if gpu.info().is_software() { 0.0 } else { FUSED };
     // A smooth body, a mesh, a mirror, water over its whole view, and photons of several layers; an odd side among them.
     for (scene, side) in [("glass-sphere", "256"), ("bunny", "200"), ("ring", "129"), ("water", "64"), ("gem", "96")] {
         let ways = [("hierarchical", Merge::None), ("combine-last", Merge::Last), ("combine-all", Merge::All)];
@@ -49,8 +50,8 @@ fn points_of_every_level_are_those_of_the_listings() {
             let (device, model) = both(&gpu, scene, side, way, "64");
             println!("{scene}, {side}², {}: {device:?}, {} ready", way.0, model.ready);
             assert_eq!(device.len(), model.points.len());
-            let off = device.iter().zip(&model.points).map(|(a, b)| a.abs_diff(*b)).max();
-            assert!(off <= Some(4 * allowed), "{scene}, {}: {device:?}, the model {model:?}", way.0);
+            let off = device.iter().zip(&model.points).map(|(a, b)| a.abs_diff(*b) as f64 / *b as f64);
+            assert!(off.fold(0.0, f64::max) <= allowed, "{scene}, {}: {device:?}, the model {model:?}", way.0);
         }
     }
 }
