@@ -34,6 +34,7 @@ void travel(inout Photon p, uint medium, float metres) {
 // One specular event: bends d, moves flux to its buckets, changes the media. The status it leaves, VALID to go on.
 uint interact(inout Photon p, Surface s, inout vec3 d, inout uint media) {
     Material m = scene_materials.data[s.material];
+    p.chain = mixed(p.chain + s.object + 1u);
     if (is_opaque_mirror(m)) {
 #if REFLECT
         float unused;

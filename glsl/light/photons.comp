@@ -31,6 +31,9 @@ layout(set = 0, binding = 10, COLUMN_EXIT) uniform writeonly COLUMN_IMAGE photon
 #ifdef COLUMN_DIRECTION
 layout(set = 0, binding = 11, COLUMN_DIRECTION) uniform writeonly COLUMN_IMAGE photons_direction;
 #endif
+#ifdef COLUMN_WAY
+layout(set = 0, binding = 12, COLUMN_WAY) uniform writeonly COLUMN_IMAGE photons_way;
+#endif
 
 void store_photon(COLUMN_PLACE place, Photon p) {
 #ifdef COLUMN_HIT
@@ -38,6 +41,9 @@ void store_photon(COLUMN_PLACE place, Photon p) {
 #endif
 #ifdef COLUMN_FLUX
     imageStore(photons_flux, place, photon_flux_column(p));
+#endif
+#ifdef COLUMN_WAY
+    imageStore(photons_way, place, vec4(float(photon_way(p))));
 #endif
 #ifdef COLUMN_EXIT
     imageStore(photons_exit, place, vec4(p.exit, float(p.status)));

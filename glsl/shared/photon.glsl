@@ -39,12 +39,13 @@ struct Photon {
     uint receiver;  // object
     uint status;
     uint bent;      // times the geometric normal bent the ray in place of the interpolated one
+    uint chain;     // which specular objects it met, mixed into one number; not in class all:N
 };
 
 // Nothing: what a sample leaves that meets no specular object.
 Photon no_photon() {
     vec3 zero = vec3(0.0);
-    return Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u);
+    return Photon(zero, zero, zero, zero, zero, zero, zero, zero, 0u, PHOTON_NONE, 0u, 0u);
 }
 
 // Column `hit`: world position and 1 + receiver; 0 where no photon arrived.
@@ -60,6 +61,18 @@ vec4 photon_flux_column(Photon p) {
 #else
     return vec4(p.flux, octahedral_pack(p.normal));
 #endif
+}
+
+uint mixed(uint h) {
+    h = (h ^ (h >> 16)) * 0x7feb352du;
+    h = (h ^ (h >> 15)) * 0x846ca68bu;
+    return h ^ (h >> 16);
+}
+
+// Of photons that met the same objects and landed on the same receiver the same number, 0 where none arrived. Others share
+// it once in 2^23 times, as many as float32 holds.
+uint photon_way(Photon p) {
+    return p.status == PHOTON_VALID ? 1u + (mixed(p.chain ^ mixed(p.receiver + 1u)) >> 9) : 0u;
 }
 
 // W, from column `flux`. With HALF columns are float16, and flux is in units of which HALF are a watt.

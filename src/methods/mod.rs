@@ -5,14 +5,14 @@
 pub mod maps;
 
 use crate::{
-    gpu::{Feature, ImageId, Plan, Resource},
+    gpu::{BufferId, Feature, ImageId, Plan, Resource},
     names::NoSuch,
     passes::{
         PlanError,
         account::Account,
         extents::Receiver,
         eye::SurfaceProvider,
-        light::{Column, Emission, Photons},
+        light::{Bench, Column, Emission, Photons, Tracer},
     },
     scene::{Region, Scene},
     settings::{Setting, Settings},
@@ -69,6 +69,10 @@ pub struct Job<'a> {
     pub emissions: &'a [Emission],
     /// The photon buffer, filled anew for each view.
     pub photons: &'a Photons,
+    /// What light is traced with, for a method that traces more of it.
+    pub bench: &'a Bench<'a>,
+    /// The tracer that fills the photon buffer.
+    pub tracer: &'a Tracer,
 }
 
 /// What a method offers once it is planned.
@@ -78,6 +82,20 @@ pub struct Provided {
     pub surface: Option<SurfaceProvider>,
     /// Images whose texels hold the flux deposited, W.
     pub deposits: Vec<ImageId>,
+    /// What a method counts itself, where it traces more than the photon buffer holds.
+    pub tally: Option<Tally>,
+}
+
+/// A method's own count. Its buffer holds seven words: what arrived in the map, W, and what of it is known as points alone
+/// (float32, three bands each); then how many cells were traced finer.
+#[derive(Clone, Copy, Debug)]
+pub struct Tally {
+    /// The buffer.
+    pub buffer: BufferId,
+    /// Light samples traced in every frame.
+    pub samples: u64,
+    /// Light samples of a cell that is traced finer.
+    pub each: u64,
 }
 
 /// A picture in the chain of a method's error budget; neighbours differ in one thing.

@@ -57,6 +57,8 @@ pub struct Planned {
     pub accounts: Vec<BufferId>,
     /// Images that hold deposited flux.
     pub deposits: Vec<ImageId>,
+    /// What the method counts itself.
+    pub tally: Option<methods::Tally>,
     /// Bytes a photon; 0 without photons.
     pub photon_bytes: u64,
     /// What planning took on the host, trees included, ms.
@@ -92,6 +94,7 @@ pub(super) fn plan_with(job: &Job, trees: &mut Trees) -> Result<Planned, RenderE
         frame,
         layers,
         accounts: photons.accounts,
+        tally: photons.provided.as_ref().and_then(|p| p.tally),
         deposits: photons.provided.map(|p| p.deposits).unwrap_or_default(),
         photon_bytes: photons.bytes_each,
         plan_ms: start.elapsed().as_secs_f64() * 1e3,
@@ -143,7 +146,17 @@ fn photon_passes(
     let photons = light::photon_buffer(plan, settings, class, &method.columns(settings), half);
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
-    let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views };
+    let bench = light::Bench {
+        scene,
+        arrays,
+        buffers,
+        settings,
+        class,
+        emissions: &emissions,
+        views,
+        side: photons.side,
+        base: "light",
+    };
     let tracer = light::Tracer::plan(plan, &bench)?;
     let mut work = methods::Job {
         plan,
@@ -154,6 +167,8 @@ fn photon_passes(
         everything,
         emissions: &emissions,
         photons: &photons,
+        bench: &bench,
+        tracer: &tracer,
     };
     let mut planned = method.plan(&mut work)?;
     let mut accounts = Vec::new();

@@ -32,8 +32,23 @@ pub struct Energy {
     pub valid_w: f64,
     /// Sum over the finished map's texels, in float64.
     pub deposited_w: f64,
-    /// Deposited over valid; `None` where nothing is valid.
+    /// Deposited over valid, or over what arrived by the method's own count; `None` where nothing is.
     pub ratio: Option<f64>,
+    /// The method's own count, where it traces more than the photon buffer holds.
+    pub counted: Option<Counted>,
+}
+
+/// What a method counted itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Counted {
+    /// In the map, W, mean of the bands.
+    pub arrived_w: f64,
+    /// Of it, as points, W.
+    pub points_w: f64,
+    /// Light samples traced.
+    pub samples: u64,
+    /// Cells traced finer.
+    pub refined: u64,
 }
 
 impl Renderer {
@@ -93,8 +108,19 @@ impl Renderer {
             deposited_w += bands.sum::<f64>() / 3.0;
         }
         let valid_w = account.valid_w();
-        let ratio = (valid_w > 0.0).then(|| deposited_w / valid_w);
-        Ok(Energy { emitted_w: account.emitted_w(), valid_w, deposited_w, ratio })
+        let counted = self.counted()?;
+        let came = counted.map_or(valid_w, |c| c.arrived_w);
+        let ratio = (came > 0.0).then(|| deposited_w / came);
+        Ok(Energy { emitted_w: account.emitted_w(), valid_w, deposited_w, ratio, counted })
+    }
+
+    fn counted(&self) -> Result<Option<Counted>, RenderError> {
+        let Some(tally) = self.planned.tally else { return Ok(None) };
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.program.read_buffer(tally.buffer)?);
+        let mean = |bands: &[u32]| bands.iter().map(|&w| f64::from(f32::from_bits(w))).sum::<f64>() / 3.0;
+        let refined = u64::from(words[6]);
+        let samples = tally.samples + tally.each * refined;
+        Ok(Some(Counted { arrived_w: mean(&words[..3]), points_w: mean(&words[3..6]), samples, refined }))
     }
 
     /// Bytes a photon in the photon buffer; 0 without photons.

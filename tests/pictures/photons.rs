@@ -48,7 +48,17 @@ fn traced(scene: &Scene, columns: &[Column]) -> Traced {
     let photons = light::photon_buffer(&mut plan, &settings, class, columns, None);
     let views = plan.upload("light/views", &[emissions[0].view.data()]);
     let (emissions, settings) = (&emissions, &settings);
-    let bench = Bench { scene, arrays: &arrays, buffers: &buffers, settings, class, emissions, views };
+    let bench = Bench {
+        scene,
+        arrays: &arrays,
+        buffers: &buffers,
+        settings,
+        class,
+        emissions,
+        views,
+        side: SIDE as u32,
+        base: "light",
+    };
     let tracer = Tracer::plan(&mut plan, &bench).unwrap();
     let (emission, tracer) = (&emissions[0], &tracer);
     let tracing = Tracing { scene: &buffers, views, tracer, class, photons: &photons, emission, index: 0 };

@@ -88,7 +88,7 @@ impl Planned for Binning {
     }
 
     fn provide(&self) -> Provided {
-        Provided { surface: None, deposits: Vec::new() }
+        Provided { surface: None, deposits: Vec::new(), tally: None }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::{
         account::{Account, BUCKETS},
         light::LAYERS,
     },
-    renderer::{Energy, Job, Providers, Renderer},
+    renderer::{Counted, Energy, Job, Providers, Renderer},
     settings::Settings,
     stats,
 };
@@ -96,7 +96,17 @@ struct EnergyRow {
     valid_w: f64,
     deposited_w: f64,
     ratio: Option<f64>,
+    counted: Option<CountedRow>,
     flux_w: Map<String, Value>,
+}
+
+/// What the method counted itself; deposited is then held against this.
+#[derive(Debug, Serialize)]
+struct CountedRow {
+    arrived_w: f64,
+    points_w: f64,
+    samples: u64,
+    refined: u64,
 }
 
 impl RenderReport {
@@ -215,6 +225,12 @@ impl EnergyRow {
             valid_w: energy.valid_w,
             deposited_w: energy.deposited_w,
             ratio: energy.ratio,
+            counted: energy.counted.map(|Counted { arrived_w, points_w, samples, refined }| CountedRow {
+                arrived_w,
+                points_w,
+                samples,
+                refined,
+            }),
             flux_w: flux(account),
         }
     }

@@ -43,7 +43,10 @@ impl Report for RenderReport {
 
     fn notes(&self) -> Vec<String> {
         let energy = &self.energy;
-        let ratio = energy.ratio.map_or("no photon is valid".to_owned(), |r| format!("deposited / valid {r:.6}"));
+        let ratio = energy.ratio.map_or("no photon is valid".to_owned(), |r| {
+            let came = if energy.counted.is_some() { "arrived" } else { "valid" };
+            format!("deposited / {came} {r:.6}")
+        });
         let mut notes = vec![
             format!(
                 "light: emitted {:.6} W, valid {:.6} W, deposited {:.6} W, {ratio}",
@@ -54,6 +57,12 @@ impl Report for RenderReport {
                 self.exposure_ev, self.nonfinite_pixels
             ),
         ];
+        notes.extend(energy.counted.as_ref().map(|c| {
+            format!(
+                "cells: {} light samples, {} cells traced finer; {:.6} W arrive in the map, of it {:.6} W as points",
+                c.samples, c.refined, c.arrived_w, c.points_w
+            )
+        }));
         notes.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
         if self.device.software {
             let device = &self.device.name;

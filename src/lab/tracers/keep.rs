@@ -85,7 +85,7 @@ impl Planned for Keeping {
     }
 
     fn provide(&self) -> Provided {
-        Provided { surface: None, deposits: Vec::new() }
+        Provided { surface: None, deposits: Vec::new(), tally: None }
     }
 }
 

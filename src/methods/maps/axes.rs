@@ -41,10 +41,11 @@ pub static MERGE: Choice = Choice {
 pub static SPLAT: Choice = Choice {
     key: "maps.splat",
     default: "fixed",
-    words: &["fixed", "varying", "thin-lens", "interpolated"],
+    words: &["fixed", "varying", "thin-lens", "interpolated", "cells"],
     doc: "how large splats are: fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
           its Fig. 7 compares: thin-lens: by where neighbouring rays come nearest; interpolated: of four sizes those that \
-          a dozen photons fall into",
+          a dozen photons fall into; ours: cells: no splats: the light between the corners of a photon's texel, exactly where \
+          it lands",
 };
 
 pub static TARGET: Choice = Choice {
@@ -125,6 +126,16 @@ impl<'s> Axes<'s> {
                 "its splats have no level each",
                 "set maps.splat=varying",
             ),
+            Self { traverse, splat: "cells", .. } if traverse != "compute" => refused(
+                format!("maps.splat=cells with maps.traverse={traverse}"),
+                "cells are shared out among texels, and added in integers, by a dispatch",
+                "set maps.traverse=compute",
+            ),
+            Self { splat: "cells", target: "multires", .. } => refused(
+                "maps.target=multires with maps.splat=cells",
+                "cells cover the texels that they cover, however many",
+                "set maps.target=single",
+            ),
             _ => Ok(axes),
         }
     }
@@ -169,13 +180,15 @@ mod tests {
 
     #[test]
     fn what_has_no_meaning_is_refused_with_the_reason() {
-        let refused: [&[(&str, &str)]; 7] = [
+        let refused: [&[(&str, &str)]; 9] = [
             &[("maps.gather", "fetch"), ("maps.traverse", "hierarchical")],
             &[("maps.merge", "last")],
             &[("maps.traverse", "copy"), ("maps.splat", "varying")],
             &[("maps.target", "multires")],
             &[("maps.target", "multires"), ("maps.splat", "interpolated"), ("maps.traverse", "fetch")],
             &[("maps.splat", "interpolated")],
+            &[("maps.splat", "cells"), ("maps.traverse", "fetch")],
+            &[("maps.splat", "cells"), ("maps.target", "multires")],
             &[("maps.splat", "thin-lens"), ("maps.traverse", "hierarchical"), ("maps.merge", "last")],
         ];
         for set in refused {

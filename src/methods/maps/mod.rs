@@ -3,6 +3,7 @@
 //! sum to one, sums in fixed point; its own columns are presets (`maps.gather`).
 
 mod axes;
+mod cells;
 mod copied;
 mod hierarchy;
 mod sparse;
@@ -11,6 +12,7 @@ mod sums;
 mod views;
 
 use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
+use cells::Cells;
 use copied::{COPY, Vertices};
 use hierarchy::Hierarchy;
 use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
@@ -159,7 +161,8 @@ impl Method for Maps {
     }
 
     fn columns(&self, settings: &Settings) -> Vec<Column> {
-        Splats::of(Axes::of(settings), settings).columns().to_vec()
+        let axes = Axes::of(settings);
+        if axes.splat == "cells" { cells::COLUMNS.to_vec() } else { Splats::of(axes, settings).columns().to_vec() }
     }
 
     fn halves(&self, settings: &Settings) -> bool {
@@ -180,12 +183,17 @@ impl Method for Maps {
         let views = views::receiving(job, side, job.settings.whole(&SPLAT_SIZE));
         let splats = Splats::of(axes, job.settings);
         let layers = views.len() as u32 * splats.levels();
+        let views = job.plan.upload("maps/views", &views);
+        let fixed = sums::fixed(job, axes, side, layers);
+        cells::check(axes, &fixed)?;
+        let cells = Cells::plan(job, axes, side, views)?;
         let mut map = |name: &&str| job.plan.image_array(name, [side, side], layers, Format::Rgba32f, Lifetime::Frame);
         Ok(Box::new(PlannedMaps {
             splats,
             maps: splats.maps().iter().map(&mut map).collect(),
-            views: job.plan.upload("maps/views", &views),
-            fixed: sums::fixed(job, axes, side, layers),
+            views,
+            cells,
+            fixed,
             vertices: Vertices::plan(job),
             hierarchy: Hierarchy::plan(job, axes),
             culls: culls(job.settings, axes),
@@ -204,6 +212,7 @@ struct PlannedMaps {
     /// One, but for splats of several sizes.
     maps: Vec<ImageId>,
     views: BufferId,
+    cells: Option<Cells>,
     fixed: Option<Fixed>,
     vertices: Option<Vertices>,
     hierarchy: Option<Hierarchy>,
@@ -244,6 +253,14 @@ impl Planned for PlannedMaps {
     }
 
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
+        if let (Some(cells), Some(fixed)) = (&self.cells, &self.fixed) {
+            cells.gather(job, fixed, view, name_of);
+            if view + 1 == job.emissions.len() {
+                cells.tally(job, fixed, job.plan.image_decl(self.maps[0]).layers);
+                fixed.resolve(job, self.maps[0], self.splats.side);
+            }
+            return;
+        }
         if let Some(vertices) = &self.vertices {
             vertices.fill(job, &name_of("maps/copy"));
         }
@@ -273,6 +290,10 @@ impl Planned for PlannedMaps {
         let maps = ["maps_map", "maps_map_1", "maps_map_2", "maps_map_3"].into_iter().zip(&self.maps);
         let reads = maps.map(|(name, &map)| (name, Resource::Image(map))).chain([self.views()]).collect();
         let surface = SurfaceProvider { file: "maps/surface.glsl", defines: self.splats.defines(), reads };
-        Provided { surface: Some(surface), deposits: self.maps[..1].to_vec() }
+        Provided {
+            surface: Some(surface),
+            deposits: self.maps[..1].to_vec(),
+            tally: self.cells.as_ref().map(Cells::counted),
+        }
     }
 }

@@ -3,9 +3,9 @@
 //! Blending n photons alike into one texel errs by up to n 2⁻²⁵ of it: each addition rounds the sum the same way. In
 //! fixed point each photon is rounded once, to its 2⁻³¹, and what follows is exact.
 
-use super::{Axes, Job};
+use super::{Axes, Job, cells};
 use crate::{
-    gpu::{BufferId, ImageId},
+    gpu::{BufferId, ImageId, PassBuilder},
     passes::light,
 };
 
@@ -25,7 +25,8 @@ pub struct Fixed {
 
 /// Whether the map's sums are in fixed point, and where; `None` where blending was asked for, or no buffer holds them.
 pub fn fixed(job: &mut Job<'_>, axes: Axes<'_>, side: u32, layers: u32) -> Option<Fixed> {
-    let bytes = u64::from(side).pow(2) * u64::from(layers) * BYTES;
+    let beyond = if axes.splat == "cells" { cells::PLACES } else { 0 };
+    let bytes = (u64::from(side).pow(2) * u64::from(layers) + beyond) * BYTES;
     let reason = match axes.traverse {
         drawn if drawn != "compute" => format!("maps.traverse = {drawn}: splats are drawn, and so blended"),
         _ if bytes > BOUND => {
@@ -42,25 +43,29 @@ pub fn fixed(job: &mut Job<'_>, axes: Axes<'_>, side: u32, layers: u32) -> Optio
 }
 
 impl Fixed {
+    /// Gives a pass the sums to add to.
+    pub fn give<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        pass.read("flux_unit", self.unit).write("flux_sums", self.sums)
+    }
+
+    /// Gives a pass the sums to read, and to begin anew.
+    pub fn resolving<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        pass.write("maps_sums", self.sums).read("maps_unit", self.unit)
+    }
+
     /// Adds the photons of one view to the sums.
-    pub fn gather(&self, pass: crate::gpu::PassBuilder<'_>, [side, layers]: [u32; 2]) {
+    pub fn gather(&self, pass: PassBuilder<'_>, [side, layers]: [u32; 2]) {
         let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), layers];
-        pass.read("flux_unit", self.unit).write("flux_sums", self.sums).dispatch(
-            "maps/gather_fixed.comp",
-            groups,
-            GROUP * GROUP,
-        );
+        self.give(pass).dispatch("maps/gather_fixed.comp", groups, GROUP * GROUP);
     }
 
     /// The map of all views' sums.
     pub fn resolve(&self, job: &mut Job<'_>, map: ImageId, side: u32) {
         let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), job.plan.image_decl(map).layers];
-        job.plan
-            .pass("maps/resolve")
-            .write("maps_sums", self.sums)
-            .store("maps_map", map)
-            .read("maps_unit", self.unit)
-            .push(&(side as i32))
-            .dispatch("maps/resolve.comp", groups, GROUP * GROUP);
+        self.resolving(job.plan.pass("maps/resolve")).store("maps_map", map).push(&(side as i32)).dispatch(
+            "maps/resolve.comp",
+            groups,
+            GROUP * GROUP,
+        );
     }
 }

@@ -4,7 +4,7 @@
 //! All views share the images, which are drawn anew before each of them; views that differ in their band alone share
 //! what is drawn. What is 16 bytes wide is float32, so that the images add no error of their own.
 
-use super::{Emission, SIDE, VIEW, emission::view_name, tracer::BACK};
+use super::{Emission, VIEW, emission::view_name, tracer::BACK};
 use crate::{
     gpu::{Blend, BufferId, Draw, Format, ImageId, Lifetime, PassBuilder, Phase, Plan, Resource, Topology},
     passes::{
@@ -37,6 +37,21 @@ pub struct Bench<'a> {
     pub emissions: &'a [Emission],
     /// The buffer of their views.
     pub views: BufferId,
+    /// Samples along each side of a view.
+    pub side: u32,
+    /// What the names of images and passes begin with.
+    pub base: &'a str,
+}
+
+impl Bench<'_> {
+    fn name(&self, of: &str) -> String {
+        format!("{}/{of}", self.base)
+    }
+
+    /// The name of a pass over a view.
+    fn view_name(&self, of: &str, index: usize) -> String {
+        view_name(&self.name(of), self.scene, self.emissions, index)
+    }
 }
 
 /// A surface in two images: position and instance, normals (`glsl/light/faces.glsl`).
@@ -86,11 +101,11 @@ struct SamplePush {
 impl Images {
     /// Adds the images, and the passes before the first frame.
     pub fn plan(plan: &mut Plan, bench: &Bench<'_>, tracer: &str) -> Result<Self, PlanError> {
-        let side = bench.settings.whole(&SIDE);
+        let side = bench.side;
         let image = |plan: &mut Plan, name: &str, format| plan.image(name, [side, side], format, Lifetime::Frame);
         let faces = |plan: &mut Plan, name: &str| Faces {
-            position: image(plan, &format!("{name}.position"), Format::Rgba32f),
-            normal: image(plan, &format!("{name}.normal"), Format::Rgba32f),
+            position: image(plan, &bench.name(&format!("{name}.position")), Format::Rgba32f),
+            normal: image(plan, &bench.name(&format!("{name}.normal")), Format::Rgba32f),
         };
         let views = image_views(bench, tracer)?;
         let mut images = Self {
@@ -100,20 +115,20 @@ impl Images {
                 "march" => "light/far_march.glsl",
                 _ => "light/far_fixed_point.glsl",
             },
-            views: plan.upload("light/image_views", &views.iter().map(View::data).collect::<Vec<_>>()),
-            depth: image(plan, "light/depth", Format::Depth32f),
-            front: faces(plan, "light/front"),
-            back: (bench.class == PathClass::Transmit2).then(|| faces(plan, "light/back")),
-            blockers: can_block(bench).then(|| image(plan, "light/blockers", Format::Depth32f)),
-            receivers: image(plan, "light/receivers", Format::Rgba32u),
-            receivers_depth: image(plan, "light/receivers.depth", Format::Depth32f),
+            views: plan.upload(&bench.name("image_views"), &views.iter().map(View::data).collect::<Vec<_>>()),
+            depth: image(plan, &bench.name("depth"), Format::Depth32f),
+            front: faces(plan, "front"),
+            back: (bench.class == PathClass::Transmit2).then(|| faces(plan, "back")),
+            blockers: can_block(bench).then(|| image(plan, &bench.name("blockers"), Format::Depth32f)),
+            receivers: image(plan, &bench.name("receivers"), Format::Rgba32u),
+            receivers_depth: image(plan, &bench.name("receivers.depth"), Format::Depth32f),
             inward: Vec::new(),
         };
         if images.back.is_none() {
-            plan.leave_out("light/back", format!("light of class {} comes out of no body", bench.class));
+            plan.leave_out(&bench.name("back"), format!("light of class {} comes out of no body", bench.class));
         }
         if images.blockers.is_none() {
-            plan.leave_out("light/blockers", "all that is diffuse lies behind the specular objects");
+            plan.leave_out(&bench.name("blockers"), "all that is diffuse lies behind the specular objects");
         }
         if tracer == "wyman2005" && images.back.is_some() {
             for index in 0..bench.emissions.len() {
@@ -129,7 +144,7 @@ impl Images {
             self.inward.push(known);
             return;
         }
-        let name = view_name("light/inward", bench.scene, bench.emissions, index);
+        let name = bench.view_name("inward", index);
         let image = plan.image(&name, [self.side; 2], Format::R32f, Lifetime::Persistent);
         self.inward.push(image);
         self.draw_front(plan, bench, Phase::Prepare, index);
@@ -153,16 +168,16 @@ impl Images {
         self.draw_front(plan, bench, phase, index);
         if let Some(back) = self.back {
             let dielectric = |o: &Object| is_body(bench.scene, o);
-            let pass = self.faces(plan, bench, "light/back", phase, index, (self.views, 2 * index)).define("BACK", 1);
+            let pass = self.faces(plan, bench, "back", phase, index, (self.views, 2 * index)).define("BACK", 1);
             let pass = if bench.settings.choice(&BACK) == "farthest" { pass.define("FARTHEST", 1) } else { pass };
             draw_faces(pass.depth(self.depth, true), Some(back), draws(bench.scene, bench.arrays, dielectric));
         }
         if let Some(blockers) = self.blockers {
-            let pass = self.faces(plan, bench, "light/blockers", phase, index, (bench.views, index));
+            let pass = self.faces(plan, bench, "blockers", phase, index, (bench.views, index));
             let pass = pass.define("DEPTH_ALONE", 1).depth(blockers, true);
             draw_faces(pass, None, draws(bench.scene, bench.arrays, |o| !is_specular(bench.scene, o)));
         }
-        let name = view_name("light/receivers", bench.scene, bench.emissions, index);
+        let name = bench.view_name("receivers", index);
         let push = RasterPush { size: [self.side as i32; 2], view: 2 * index as u32 + 1 };
         bench
             .buffers
@@ -180,7 +195,7 @@ impl Images {
     }
 
     fn draw_front(&self, plan: &mut Plan, bench: &Bench<'_>, phase: Phase, index: usize) {
-        let pass = self.faces(plan, bench, "light/front", phase, index, (bench.views, index)).depth(self.depth, true);
+        let pass = self.faces(plan, bench, "front", phase, index, (bench.views, index)).depth(self.depth, true);
         draw_faces(pass, Some(self.front), draws(bench.scene, bench.arrays, |o| is_specular(bench.scene, o)));
     }
 
@@ -194,7 +209,7 @@ impl Images {
         index: usize,
         (views, view): (BufferId, usize),
     ) -> PassBuilder<'p> {
-        let name = view_name(base, bench.scene, bench.emissions, index);
+        let name = bench.view_name(base, index);
         let push = RasterPush { size: [self.side as i32; 2], view: view as u32 };
         bench
             .buffers

@@ -6,6 +6,7 @@
 //! In class `all:N` each sample grows a tree, and the buffer has `light.layers` layers, which cost their bytes whether a
 //! sample fills them or not.
 
+mod corners;
 mod emission;
 mod images;
 mod photons;
@@ -17,9 +18,10 @@ use crate::{
     settings::{Choice, Setting, Settings, Whole, Word},
 };
 
+pub use corners::Corners;
 pub use emission::{Emission, emissions, view_name};
 pub use images::Bench;
-pub use photons::{Column, Photons, Tracing, photon_buffer, photons};
+pub use photons::{Column, Photons, SamplePush, Tracing, photon_buffer, photons};
 pub use tracer::{BACK, TOTAL_REFLECTION, TRACER, Tracer};
 pub use unit::flux_unit;
 

@@ -22,6 +22,8 @@ pub enum Column {
     Exit,
     /// Direction of travel after it, and how the photon ended.
     Direction,
+    /// A number that photons of one way share: the same objects met in one order, the same receiver (0: no photon).
+    Way,
 }
 
 impl Column {
@@ -32,12 +34,14 @@ impl Column {
             Self::Flux => "flux",
             Self::Exit => "exit",
             Self::Direction => "direction",
+            Self::Way => "way",
         }
     }
 
     /// Positions and flux in float32, unless all are asked for in float16; a direction loses nothing that matters there.
     pub fn format(self, half: bool) -> Format {
         match self {
+            Self::Way => Format::R32f,
             _ if half => Format::Rgba16f,
             Self::Direction => Format::Rgba16f,
             _ => Format::Rgba32f,
@@ -58,6 +62,27 @@ pub struct Photons {
 }
 
 impl Photons {
+    /// Of `side` samples a side, one photon each, in float32.
+    pub(super) fn single(plan: &mut Plan, name: &str, side: u32, columns: &[Column]) -> Self {
+        Self { side, layers: None, half: None, columns: Vec::new() }.with_columns(plan, name, columns)
+    }
+
+    fn with_columns(mut self, plan: &mut Plan, name: &str, columns: &[Column]) -> Self {
+        let mut wanted = columns.to_vec();
+        wanted.sort();
+        wanted.dedup();
+        for c in wanted {
+            let (name, extent, format) =
+                (format!("{name}.{}", c.name()), [self.side; 2], c.format(self.half.is_some()));
+            let image = match self.layers {
+                Some(layers) => plan.image_array(&name, extent, layers, format, Lifetime::Frame),
+                None => plan.image(&name, extent, format, Lifetime::Frame),
+            };
+            self.columns.push((c, image));
+        }
+        self
+    }
+
     /// The columns asked for, as images to fetch from. A column that no method declared is not there.
     pub fn fetch(&self, wanted: &[Column]) -> Vec<(&'static str, Resource)> {
         let named = |c: Column| match c {
@@ -65,6 +90,7 @@ impl Photons {
             Column::Flux => "photons_flux",
             Column::Exit => "photons_exit",
             Column::Direction => "photons_direction",
+            Column::Way => "photons_way",
         };
         let wanted = self.columns.iter().filter(|(c, _)| wanted.contains(c));
         wanted.map(|&(c, image)| (named(c), Resource::Image(image))).collect()
@@ -108,26 +134,20 @@ pub fn photon_buffer(
     let half = half.map(|most| if most > 0.0 { (BRIGHTEST - most.log2().ceil()).exp2() } else { 1.0 });
     let side = settings.whole(&SIDE);
     let layers = matches!(class, PathClass::All(_)).then(|| settings.whole(&LAYERS));
-    let image = |plan: &mut Plan, c: Column| {
-        let (name, extent) = (format!("light/photons.{}", c.name()), [side, side]);
-        match layers {
-            Some(layers) => plan.image_array(&name, extent, layers, c.format(half.is_some()), Lifetime::Frame),
-            None => plan.image(&name, extent, c.format(half.is_some()), Lifetime::Frame),
-        }
-    };
-    let mut wanted = columns.to_vec();
-    wanted.sort();
-    wanted.dedup();
-    Photons { side, layers, half, columns: wanted.into_iter().map(|c| (c, image(plan, c))).collect() }
+    let photons = Photons { side, layers, half, columns: Vec::new() };
+    photons.with_columns(plan, "light/photons", columns)
 }
 
 /// Push constants of `glsl/light/sample.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-struct SamplePush {
-    size: [i32; 2],
-    light: u32,
-    view: u32,
+pub struct SamplePush {
+    /// Texels of the view.
+    pub size: [i32; 2],
+    /// The light.
+    pub light: u32,
+    /// The view's place among the views.
+    pub view: u32,
 }
 
 /// The tracer over one view, which several passes run.
@@ -155,26 +175,28 @@ impl Tracing<'_> {
         self.photons.side.div_ceil(GROUP)
     }
 
-    /// Gives a pass what the tracer reads, and dispatches it over the view.
-    pub fn dispatch(&self, pass: PassBuilder<'_>, shader: &str) {
+    /// Push constants of a dispatch over the view.
+    pub fn push(&self) -> SamplePush {
+        SamplePush { size: [self.photons.side as i32; 2], light: self.emission.light as u32, view: self.index as u32 }
+    }
+
+    /// Gives a pass all that tracing from the view reads but push constants.
+    pub fn give<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         let (events, reflect) = match self.class {
             PathClass::Reflect1 => (1, 1),
             PathClass::Transmit1 => (1, 0),
             PathClass::Transmit2 => (2, 0),
             PathClass::All(most) => (most, 0), // of a tree only their number matters
         };
-        let push = SamplePush {
-            size: [self.photons.side as i32; 2],
-            light: self.emission.light as u32,
-            view: self.index as u32,
-        };
         let pass = self.photons.define(self.tracer.give(self.scene.lights(self.scene.tracing(pass)), self.index));
         let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
-        pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect).push(&push).dispatch(
-            shader,
-            [self.groups(), self.groups(), 1],
-            GROUP * GROUP,
-        );
+        pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect)
+    }
+
+    /// Gives a pass what the tracer reads, and dispatches it over the view.
+    pub fn dispatch(&self, pass: PassBuilder<'_>, shader: &str) {
+        let groups = [self.groups(), self.groups(), 1];
+        self.give(pass).push(&self.push()).dispatch(shader, groups, GROUP * GROUP);
     }
 }
 

@@ -4,6 +4,7 @@
 //! the shader's own rounding and nothing else.
 
 mod canonical;
+mod cover;
 mod directions;
 mod fresnel;
 mod interface;

@@ -1,0 +1,202 @@
+//! Splat `cells`: the flux of each texel of a light's view is spread over where the light between its corners lands.
+//!
+//! Ours. The corners are traced beside the centres, and the four triangles between them are shared out among the map's
+//! texels exactly: where neighbouring rays stay neighbours, no light is blurred and no gap is left. A cell that its five rays
+//! do not describe (cut by a silhouette or a crease, bent, or very large) is traced again as 4 × 4 smaller ones. That takes rays from anywhere, as `bvh` traces them; the image-space tracers know the centres of texels
+//! alone, and leave such cells as points.
+
+use super::{Axes, Job, SPLAT_SIZE, sums::Fixed};
+use crate::{
+    gpu::{BufferId, Lifetime, PassBuilder, Resource},
+    methods::Tally,
+    passes::{
+        PlanError,
+        light::{Column, Corners, SamplePush, TRACER, Tracing},
+    },
+    scene::PathClass,
+};
+
+/// What a centre's photon must tell.
+pub const COLUMNS: &[Column] = &[Column::Hit, Column::Flux, Column::Way];
+/// Places beyond the map's where what arrived is summed, and what of it went as points (`SLOTS` of `glsl/maps/cells.glsl`).
+pub const PLACES: u64 = 128;
+/// Light samples that a refined cell takes (`SAMPLES` of `glsl/maps/cells_refine.comp`).
+const SAMPLES: u64 = 4 * 14;
+/// Large pieces that are listed at most; what comes after is spread where it is found (`LARGE_PLACES` of
+/// `glsl/maps/cells.glsl`).
+const LARGE_PLACES: u64 = 32_768;
+/// Bytes of one (`Large` there).
+const LARGE_BYTES: u64 = 48;
+/// Words of the tally.
+const TALLY_BYTES: u64 = 7 * 4;
+/// Work groups that share the listed cells, 16 of which they take at once: enough for the widest device, and few enough to
+/// cost nothing where none is listed.
+const GROUPS: u32 = 256;
+/// Invocations along one side of the other work groups.
+const GROUP: u32 = 8;
+
+/// Cells, planned.
+pub struct Cells {
+    corners: Corners,
+    /// Of each view, how many cells are to be traced finer, and how many pieces are large.
+    counts: BufferId,
+    /// Pieces of cells that cover many texels.
+    large: BufferId,
+    /// The cells to be traced finer, where the tracer can.
+    list: Option<BufferId>,
+    views: BufferId,
+    /// Texels of the map.
+    side: u32,
+    /// Of a point's splat, texels.
+    diameter: f32,
+    tally: Tally,
+}
+
+/// Push constants of `glsl/maps/cells.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct CellsPush {
+    side: i32,
+    diameter: f32,
+    light: u32,
+    view: u32,
+}
+
+/// Push constants of `glsl/maps/cells_refine.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct RefinePush {
+    sample: SamplePush,
+    side: i32,
+    diameter: f32,
+}
+
+/// Push constants of `glsl/maps/cells_tally.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct TallyPush {
+    first: u32,
+    views: u32,
+}
+
+/// Cells are added in integers alone.
+///
+/// # Errors
+/// Where no buffer holds the map's sums.
+pub fn check(axes: Axes<'_>, fixed: &Option<Fixed>) -> Result<(), PlanError> {
+    if axes.splat != "cells" || fixed.is_some() {
+        return Ok(());
+    }
+    Err(PlanError::Refused {
+        what: "maps.splat=cells with so large a map".into(),
+        reason: "cells are added in integers, and a buffer of 128 MiB does not hold so many".into(),
+        remedy: "lower maps.side".into(),
+    })
+}
+
+impl Cells {
+    /// Adds what all views share.
+    ///
+    /// # Errors
+    /// Where a sample leaves several photons, or no buffer holds the map's sums.
+    pub fn plan(job: &mut Job<'_>, axes: Axes<'_>, side: u32, views: BufferId) -> Result<Option<Self>, PlanError> {
+        if axes.splat != "cells" {
+            return Ok(None);
+        }
+        if matches!(job.bench.class, PathClass::All(_)) {
+            return Err(PlanError::Refused {
+                what: format!("maps.splat=cells in class {}", job.bench.class),
+                reason:
+                    "a sample then leaves several photons, and which of them neighbours those of the next is not known"
+                        .into(),
+                remedy: "set light.paths=reflect-1, transmit-1 or transmit-2, or maps.splat=fixed".into(),
+            });
+        }
+        let corners = Corners::plan(job.plan, job.bench, &[Column::Hit, Column::Way])?;
+        let count = job.emissions.len();
+        let cells = u64::from(job.photons.side).pow(2);
+        let counts = job.plan.upload_once("maps/cells.counts", &vec![0u32; 2 * count]);
+        let large = job.plan.buffer("maps/cells.large", LARGE_PLACES * LARGE_BYTES, Lifetime::Frame);
+        let list = (job.settings.choice(&TRACER) == "bvh")
+            .then(|| job.plan.buffer("maps/cells.list", 4 * cells, Lifetime::Frame));
+        if list.is_none() {
+            job.plan.leave_out(
+                "maps/cells.refine",
+                "the tracer's images show no more than the centres of their texels: cells cut by an edge go as points",
+            );
+        }
+        let samples = (cells + u64::from(corners.photons.side).pow(2)) * count as u64;
+        let buffer = job.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);
+        let diameter = job.settings.whole(&SPLAT_SIZE) as f32;
+        Ok(Some(Self {
+            corners,
+            counts,
+            large,
+            list,
+            views,
+            side,
+            diameter,
+            tally: Tally { buffer, samples, each: SAMPLES },
+        }))
+    }
+
+    /// Adds the cells of one view to the sums.
+    pub fn gather(&self, job: &mut Job<'_>, fixed: &Fixed, view: usize, name_of: &dyn Fn(&str) -> String) {
+        self.corners.trace(job.plan, job.bench, view);
+        let emission = &job.emissions[view];
+        let (side, diameter) = (self.side as i32, self.diameter);
+        let push = CellsPush { side, diameter, light: emission.light as u32, view: view as u32 };
+        let groups = job.photons.side.div_ceil(GROUP);
+        let pass = self.give(fixed, job.plan.pass(&name_of("maps/cells")));
+        let pass = pass.with(job.photons.fetch(COLUMNS)).with(self.corners()).read("maps_views", self.views);
+        let pass = self.list.into_iter().fold(pass, |pass, list| pass.define("REFINED", 1).write("cells_list", list));
+        pass.push(&push).dispatch("maps/cells.comp", [groups, groups, 1], GROUP * GROUP);
+        if let Some(list) = self.list {
+            self.refine(job, fixed, list, view, &name_of("maps/cells.refine"));
+        }
+        let pass = self.give(fixed, job.plan.pass(&name_of("maps/cells.large")));
+        pass.push(&push).dispatch("maps/cells_large.comp", [GROUPS, 1, 1], GROUP * GROUP);
+    }
+
+    fn refine(&self, job: &mut Job<'_>, fixed: &Fixed, list: BufferId, view: usize, name: &str) {
+        let tracing = Tracing {
+            scene: job.bench.buffers,
+            views: job.bench.views,
+            tracer: job.tracer,
+            class: job.bench.class,
+            photons: job.photons,
+            emission: &job.emissions[view],
+            index: view,
+        };
+        let (side, diameter) = (self.side as i32, self.diameter);
+        let pass = tracing.give(self.give(fixed, job.plan.pass(name)));
+        pass.read("maps_views", self.views)
+            .read("cells_list", list)
+            .push(&RefinePush { sample: tracing.push(), side, diameter })
+            .dispatch("maps/cells_refine.comp", [GROUPS, 1, 1], GROUP * GROUP);
+    }
+
+    /// What all passes over cells read and write.
+    fn give<'p>(&self, fixed: &Fixed, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        fixed.give(pass).write("cells_counts", self.counts).write("cells_large", self.large)
+    }
+
+    fn corners(&self) -> impl Iterator<Item = (&'static str, Resource)> {
+        let column = |name, column| Some((name, Resource::Image(self.corners.photons.column(column)?)));
+        [column("corners_hit", Column::Hit), column("corners_way", Column::Way)].into_iter().flatten()
+    }
+
+    /// Adds the pass that reads what all views' cells brought, after the last of them.
+    pub fn tally(&self, job: &mut Job<'_>, fixed: &Fixed, layers: u32) {
+        let views = job.emissions.len() as u32;
+        let pass = fixed.resolving(job.plan.pass("maps/cells.tally")).write("cells_tally", self.tally.buffer);
+        let pass = pass.write("cells_counts", self.counts);
+        let first = self.side * self.side * layers;
+        pass.push(&TallyPush { first, views }).dispatch("maps/cells_tally.comp", [1, 1, 1], GROUP * GROUP);
+    }
+
+    /// What the tally holds.
+    pub fn counted(&self) -> Tally {
+        self.tally
+    }
+}
