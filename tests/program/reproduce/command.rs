@@ -76,7 +76,10 @@ fn time_that_is_up_ends_rounds_and_the_files_say_so() {
     let mut names: Vec<_> =
         fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names, ["copy-16-16-256.png", "copy-16-32-256.png", "copy-32-32-256.png", "maps.table2.json"]);
+    assert_eq!(
+        names,
+        ["copy-16-16-256.png", "copy-16-32-256.png", "copy-32-32-256.png", "maps.table2.json", "maps.table2.svg"]
+    );
     let written: Value = serde_json::from_slice(&fs::read(out.join("maps.table2.json")).unwrap()).unwrap();
     assert_eq!(written, report);
 }
