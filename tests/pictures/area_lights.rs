@@ -228,7 +228,7 @@ fn points_share_the_photons_of_a_light() {
     let plan = plan(&job).unwrap().plan;
     let extent = |name: &str| plan.images.iter().find(|image| image.name == name).map(|image| image.extent);
     assert_eq!(extent("light/photons.hit"), Some([512; 2]));
-    assert_eq!(extent("light/photons.hit.256"), Some([256; 2]));
+    assert_eq!(extent("light/photons.256.hit"), Some([256; 2]));
 }
 
 /// A lamp that is seen edge-on from all specular things, or turned away, or below the receiver, sends no photon there; beside
