@@ -90,6 +90,10 @@ void main() {
     caustic = vec4(0.0);
     int samples = push.samples * push.samples;
     for (int k = 0; k < samples; k++) {
+#ifdef AREA_SAMPLES
+        eye_sample = k;
+        eye_samples = samples;
+#endif
         Surface s;
         vec3 d;
         if (!eye_surface(sample_texel(pixel, k), s, d)) continue;

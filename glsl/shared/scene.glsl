@@ -4,7 +4,8 @@
 
 // DISPERSIVE is defined where materials bend the bands apart: they are then traced apart.
 // The host defines HAS_SPHERES, HAS_QUADS, HAS_MESHES, HAS_BOXES, HAS_DISKS, HAS_CYLINDERS, HAS_PARABOLOIDS and
-// HAS_SINES where a scene has any, and NO_SPOTS where it has no spot: what it lacks is not compiled.
+// HAS_SINES where a scene has any, HAS_PATCHES where it has surfaces that shine, and NO_SPOTS where it has no spot: what it
+// lacks is not compiled.
 #if defined(HAS_SPHERES) || defined(HAS_BOXES) || defined(HAS_DISKS) || defined(HAS_CYLINDERS) || \
     defined(HAS_PARABOLOIDS) || defined(HAS_SINES)
 #define HAS_CAST // shapes that the eye casts rays at; quads and meshes are rasterised as they are
@@ -72,10 +73,10 @@ const uint MATERIAL_CONDUCTOR = 3u;
 
 struct Light {
     uint kind;
-    vec3 vector; // directional: unit direction of travel; point, spot: position
-    vec3 power;  // directional: irradiance of a plane facing it, W/m^2; point, spot: intensity, W/sr (on the axis)
-    uint media;  // about a point light (transport.glsl)
-    vec3 axis;   // spot: unit
+    vec3 vector; // directional: unit direction of travel; else position
+    vec3 power;  // directional: irradiance of a plane facing it, W/m^2; else intensity, W/sr (on the axis)
+    uint media;  // about a light that has a place (transport.glsl)
+    vec3 axis;   // spot, patch: unit
     float inner; // 1 - cosine of the half angle up to which all of the power goes; above 2: everywhere
     float outer; // 1 - cosine of the half angle beyond which none does
     uint slide;  // spot: 1 + index in scene_slides; 0: none
@@ -83,6 +84,7 @@ struct Light {
 
 const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
+const uint LIGHT_PATCH = 2u; // a point of a surface that shines
 
 layout(set = 0, binding = 0, scalar) readonly buffer SceneNodes { Node data[]; } scene_nodes;
 #ifdef HAS_MESHES
@@ -153,6 +155,9 @@ float beam_share(Light light, vec3 d) {
 
 // The same of each band, by the colours of what the light projects.
 vec3 light_share(Light light, vec3 d) {
+#ifdef HAS_PATCHES
+    if (light.kind == LIGHT_PATCH) return vec3(max(dot(light.axis, d), 0.0));
+#endif
     vec3 share = vec3(beam_share(light, d));
 #ifdef HAS_SLIDES
     if (light.slide != 0u && share.x > 0.0) share *= slide_share(scene_slides.data[light.slide - 1u], light.axis, d);

@@ -73,7 +73,7 @@ struct MaterialRow {
 struct LightRow {
     name: String,
     kind: &'static str,
-    /// W/m² on a plane that faces parallel light; W/sr of a point, and on the axis of a spot.
+    /// W/m² on a plane that faces parallel light; W/sr of a point, and on the axis of a spot; W/m²/sr of a surface.
     bands: [f64; 3],
     /// What it gives in all, mean of the bands; parallel light has no end.
     power_w: Option<f64>,
@@ -81,6 +81,10 @@ struct LightRow {
     position_m: Option<[f64; 3]>,
     /// The picture that it projects.
     image: Option<String>,
+    /// Of parallel light that has a disc.
+    angular_diameter_degrees: Option<f64>,
+    /// Of a surface that shines.
+    area_m2: Option<f64>,
     /// What of it changes with time.
     moves: Vec<&'static str>,
 }
@@ -202,8 +206,12 @@ impl LightRow {
     fn new(scene: &Scene, index: usize) -> Self {
         let light = &scene.lights[index];
         let (kind, direction) = match &light.kind {
-            LightKind::Directional { direction, .. } => ("directional", Some(*direction)),
+            LightKind::Directional { direction, .. } | LightKind::Sun { direction, .. } => {
+                ("directional", Some(*direction))
+            }
             LightKind::Point { .. } => ("point", None),
+            LightKind::Patch { normal, .. } => ("patch", Some(*normal)),
+            LightKind::Lamp { face, .. } => (if face.round { "disk" } else { "quad" }, Some(face.normal())),
             LightKind::Spot { beam, .. } => ("spot", Some(beam.axis)),
         };
         Self {
@@ -217,16 +225,30 @@ impl LightRow {
                 LightKind::Spot { slide, .. } => slide.as_ref().map(|slide| slide.picture.file.clone()),
                 _ => None,
             },
+            angular_diameter_degrees: match &light.kind {
+                LightKind::Sun { radius, .. } => Some(2.0 * radius.to_degrees()),
+                _ => None,
+            },
+            area_m2: match &light.kind {
+                LightKind::Lamp { face, .. } => Some(face.area()),
+                _ => None,
+            },
             moves: scene.light_motion(index),
         }
     }
 
     fn cells(&self) -> Vec<Cell> {
-        let unit = if self.position_m.is_some() { "W/sr" } else { "W/m2" };
+        let unit = match (self.position_m, self.area_m2) {
+            (_, Some(_)) => "W/m2/sr",
+            (Some(_), None) => "W/sr",
+            (None, None) => "W/m2",
+        };
+        let across = self.angular_diameter_degrees.map(|degrees| format!("{degrees:.4} degrees across"));
+        let area = self.area_m2.map(|area| format!("of {area:.4} m2"));
         let at = self.position_m.map(|at| format!("at {}", vector(at)));
         let along = self.direction.map(|along| format!("along {}", vector(along)));
         let image = self.image.as_ref().map(|file| format!("throws {file}"));
-        let place = at.into_iter().chain(along).chain(image).collect::<Vec<_>>().join(", ");
+        let place = at.into_iter().chain(along).chain(across).chain(area).chain(image).collect::<Vec<_>>().join(", ");
         let power = self.power_w.map_or(Cell::None, |watts| Cell::Real(watts, 4));
         let strength = Cell::text(format!("{} {unit}", shown(self.bands)));
         vec![Cell::text(&self.name), Cell::text(self.kind), strength, power, Cell::text(place), moving(&self.moves)]

@@ -67,7 +67,7 @@ pub struct Job<'a> {
     pub everything: &'a Extent,
     /// The emission views, in the order in which they come.
     pub emissions: &'a [Emission],
-    /// The photon buffer, filled anew for each view.
+    /// The photon buffer, filled anew for each view: the one of most photons, and in [`Planned::gather`] the view's own.
     pub photons: &'a Photons,
     /// What light is traced with, for a method that traces more of it.
     pub bench: &'a Bench<'a>,

@@ -2,11 +2,13 @@
 
 use glam::DVec3;
 
-use crate::scene::{Light, LightKind, Object, Region, Scene, Shape};
+use crate::scene::{LightKind, Object, Region, Scene, Shape};
 
 /// Points along each side of the region (midpoint rule). A shadow's edge, the roughest thing there is, costs about one
 /// point in 128^1.5 of its contrast, some 10⁻³: enough for a yardstick.
 const SIDE: usize = 128;
+/// Lights without size that stand for one that has a size: without shadows their sum is exact to some 10⁻³.
+const SAMPLES: u32 = 16;
 /// Shadow rays end this far before a light and begin this far off the receiver, relative to the region's size.
 const CLEAR: f64 = 1e-9;
 
@@ -24,17 +26,18 @@ const CLEAR: f64 = 1e-9;
 /// ```
 pub fn bare_irradiance(scene: &Scene) -> f64 {
     let casters: Vec<Caster> = scene.objects.iter().enumerate().filter_map(|at| Caster::new(scene, at)).collect();
-    let each = scene.lights.iter().map(|light| mean_irradiance(&scene.region, light, &casters));
+    let lights: Vec<LightKind> = scene.lights.iter().flat_map(|light| light.kind.samples(SAMPLES)).collect();
+    let each = lights.iter().map(|light| mean_irradiance(&scene.region, light, &casters));
     match each.sum::<f64>() {
         dark if dark <= 0.0 => {
-            let facing = scene.lights.iter().map(|light| Incident::at(light, scene.region.center).facing);
+            let facing = lights.iter().map(|light| Incident::at(light, scene.region.center).facing);
             facing.sum()
         }
         lit => lit,
     }
 }
 
-fn mean_irradiance(region: &Region, light: &Light, casters: &[Caster]) -> f64 {
+fn mean_irradiance(region: &Region, light: &LightKind, casters: &[Caster]) -> f64 {
     let normal = region.normal();
     let clear = CLEAR * (region.u.length() + region.v.length());
     let along = |at: usize| (2 * at + 1) as f64 / SIDE as f64 - 1.0;
@@ -60,18 +63,22 @@ struct Incident {
 }
 
 impl Incident {
-    fn at(light: &Light, point: DVec3) -> Self {
-        match &light.kind {
+    fn at(light: &LightKind, point: DVec3) -> Self {
+        match light {
             LightKind::Directional { direction, irradiance } => {
                 Self { facing: mean(irradiance), towards: -direction, reach: f64::INFINITY }
             }
-            LightKind::Point { position, intensity } | LightKind::Spot { position, intensity, .. } => {
+            LightKind::Patch { position, intensity, .. }
+            | LightKind::Point { position, intensity }
+            | LightKind::Spot { position, intensity, .. } => {
                 let way = position - point;
                 let (reach, towards) = (way.length(), way.normalize_or_zero());
                 // A light on the very point lights it from nowhere: the midpoint rule leaves it out.
-                let share = if reach > 0.0 { light.kind.share(-towards) / (reach * reach) } else { DVec3::ZERO };
+                let share = if reach > 0.0 { light.share(-towards) / (reach * reach) } else { DVec3::ZERO };
                 Self { facing: mean(&(DVec3::from(*intensity) * share).to_array()), towards, reach }
             }
+            // Of what has a size, its middle.
+            LightKind::Sun { .. } | LightKind::Lamp { .. } => Self::at(&light.samples(1)[0], point),
         }
     }
 }

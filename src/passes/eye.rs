@@ -7,10 +7,11 @@ use glam::{DVec2, DVec3};
 
 use super::{
     accel::SceneArrays,
+    lamps::Lamps,
     scene::{SceneBuffers, visible_draws},
 };
 use crate::{
-    gpu::{Blend, BufferId, Format, ImageId, Lifetime, Plan, Resource, Topology},
+    gpu::{Blend, BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource, Topology},
     scene::{Camera, CameraKind, Scene},
     settings::{Real, Setting, Settings, Whole},
     view::{Extent, View, ViewData},
@@ -51,6 +52,26 @@ pub static DEPTH: Whole = Whole {
     doc: "specular events of a path from the eye, in pixels that look at glass or mirrors; branches below 1e-4 of it are left",
 };
 
+/// Points of a light with a size, as they are set; [`light_samples`] says how many are in force.
+pub static LIGHT_SAMPLES: Whole = Whole {
+    key: "eye.light_samples",
+    unit: "points",
+    default: 0,
+    range: 0..=256,
+    doc: "of each light with a size, points that an eye sample asks for direct light; 0: as many as make 64 a pixel",
+};
+
+/// Points of a light that a pixel asks, unless told otherwise.
+const POINTS: u32 = 64;
+
+/// Points of each light with a size that one of `eye_samples` samples of a pixel asks.
+pub fn light_samples(settings: &Settings, eye_samples: u32) -> u32 {
+    match settings.whole(&LIGHT_SAMPLES) {
+        0 => POINTS.div_ceil(eye_samples.max(1)),
+        set => set,
+    }
+}
+
 /// Exposure of the PNG.
 pub static EXPOSURE: Real = Real {
     key: "eye.exposure",
@@ -61,7 +82,8 @@ pub static EXPOSURE: Real = Real {
 };
 
 /// Settings of this room.
-pub static SETTINGS: &[Setting] = &[Setting::Whole(&SAMPLES), Setting::Whole(&DEPTH), Setting::Real(&EXPOSURE)];
+pub static SETTINGS: &[Setting] =
+    &[Setting::Whole(&SAMPLES), Setting::Whole(&LIGHT_SAMPLES), Setting::Whole(&DEPTH), Setting::Real(&EXPOSURE)];
 
 /// Near plane of a pinhole, relative to the far one. Depth is linear, so this costs no precision.
 const NEAR: f64 = 1e-6;
@@ -139,6 +161,7 @@ pub struct EyeLayers {
 struct Eye<'a> {
     plan: &'a mut Plan,
     buffers: &'a SceneBuffers,
+    lamps: &'a Lamps,
     frame: BufferId,
     gbuffer: ImageId,
     push: EyePush,
@@ -153,6 +176,8 @@ pub struct EyeScene<'a> {
     pub arrays: &'a SceneArrays,
     /// Its buffers.
     pub buffers: &'a SceneBuffers,
+    /// Its lights.
+    pub lamps: &'a Lamps,
     /// The buffer of [`FrameData`].
     pub frame: BufferId,
     /// The camera.
@@ -173,8 +198,9 @@ pub fn passes(
     let image = |plan: &mut Plan, name: &str| plan.image(name, from.size, Format::Rgba32f, Lifetime::Frame);
     let gbuffer = gbuffer(plan, from);
     let push = EyePush { size: from.size.map(|s| s as i32), samples: from.samples as i32 };
-    let mut eye = Eye { plan, buffers: from.buffers, frame: from.frame, gbuffer, push, size: from.size };
-    let (irradiance_direct, direct) = eye.direct(from.scene.lights.len());
+    let mut eye =
+        Eye { plan, buffers: from.buffers, lamps: from.lamps, frame: from.frame, gbuffer, push, size: from.size };
+    let (irradiance_direct, direct) = eye.direct();
     let (irradiance_caustic, caustic) = match surface {
         Some(provider) => {
             let (e, l) = eye.surface(provider);
@@ -188,7 +214,7 @@ pub fn passes(
         from.scene.materials[from.scene.objects[object].material].is_specular()
     });
     if sees_specular {
-        eye.trace(from.scene.lights.len(), settings.whole(&DEPTH), direct, caustic, surface);
+        eye.trace(settings.whole(&DEPTH), direct, caustic, surface);
     } else if !from.scene.has_specular() {
         eye.plan.leave_out("eye/trace", "nothing in the scene is specular");
     } else {
@@ -223,21 +249,29 @@ fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>) -> ImageId {
     seen
 }
 
+/// For a pass that lights what it sees.
+fn lit<'p>(buffers: &SceneBuffers, lamps: &Lamps, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+    let pass = if lamps.plain + lamps.seen == 0 { pass } else { buffers.lights(pass) };
+    let pass = pass.define("LIGHT_COUNT", lamps.plain);
+    if lamps.seen == 0 {
+        return pass;
+    }
+    pass.define("AREA_FIRST", lamps.seen_first).define("AREA_SAMPLES", lamps.seen)
+}
+
 impl Eye<'_> {
     fn target(&mut self, name: &str) -> ImageId {
         self.plan.image(name, self.size, Format::Rgba32f, Lifetime::Frame)
     }
 
-    fn direct(&mut self, lights: usize) -> (ImageId, ImageId) {
+    fn direct(&mut self) -> (ImageId, ImageId) {
         let (irradiance, radiance) = (self.target("eye/irradiance.direct"), self.target("eye/direct"));
         let pass = self.buffers.colours(self.plan.pass("eye/direct"));
-        let pass = match lights {
-            0 => self.buffers.surfaces(pass),
-            _ => self.buffers.lights(self.buffers.tracing(pass)),
-        };
-        pass.read("frame", self.frame)
+        let dark = self.lamps.plain + self.lamps.seen == 0;
+        let pass = if dark { self.buffers.surfaces(pass) } else { self.buffers.tracing(pass) };
+        lit(self.buffers, self.lamps, pass)
+            .read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
-            .define("LIGHT_COUNT", lights)
             .push(&self.push)
             .target(irradiance, 0, Some([0.0; 4]), Blend::Replace)
             .target(radiance, 0, Some([0.0; 4]), Blend::Replace)
@@ -261,24 +295,16 @@ impl Eye<'_> {
         (irradiance, radiance)
     }
 
-    fn trace(
-        &mut self,
-        lights: usize,
-        depth: u32,
-        direct: ImageId,
-        caustic: Option<ImageId>,
-        surface: Option<&SurfaceProvider>,
-    ) {
+    fn trace(&mut self, depth: u32, direct: ImageId, caustic: Option<ImageId>, surface: Option<&SurfaceProvider>) {
         let reads = surface.map(|s| s.reads.clone()).unwrap_or_default();
-        let mut pass = self
-            .buffers
-            .lights(self.buffers.tracing(self.buffers.colours(self.plan.pass("eye/trace"))))
+        let (buffers, lamps) = (self.buffers, self.lamps);
+        let pass = buffers.tracing(buffers.colours(self.plan.pass("eye/trace")));
+        let mut pass = lit(buffers, lamps, pass)
             .with(reads)
             .provide("provider.glsl", surface.map_or("eye/no_surface.glsl", |s| s.file))
             .defines(surface.map_or(&[], |s| &s.defines))
             .read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
-            .define("LIGHT_COUNT", lights)
             .define("DEPTH", depth)
             .push(&self.push)
             .target(direct, 0, None, Blend::Add);

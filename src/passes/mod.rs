@@ -5,6 +5,7 @@ pub mod account;
 mod error;
 pub mod extents;
 pub mod eye;
+pub mod lamps;
 pub mod light;
 pub mod scene;
 

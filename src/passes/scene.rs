@@ -40,6 +40,7 @@ pub struct SceneBuffers {
     /// Kinds of shapes that there are.
     kinds: Vec<(u32, &'static str)>,
     has_spots: bool,
+    has_patches: bool,
     is_dispersive: bool,
 }
 
@@ -82,6 +83,7 @@ impl SceneBuffers {
                 (plan.upload("scene/slides", &arrays.slides), texels)
             }),
             kinds: KINDS.into_iter().filter(|(kind, _)| any(*kind)).collect(),
+            has_patches: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Lamp { .. })),
             has_spots: scene.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })),
             is_dispersive: scene.is_dispersive(),
         }
@@ -115,6 +117,7 @@ impl SceneBuffers {
     /// For a pass that asks the lights; nothing where there are none.
     pub fn lights<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         let pass = if self.has_spots { pass } else { pass.define("NO_SPOTS", 1) };
+        let pass = if self.has_patches { pass.define("HAS_PATCHES", 1) } else { pass };
         let pass = match self.slides {
             Some((slides, texels)) => {
                 pass.define("HAS_SLIDES", 1).offer("scene_slides", slides).offer("scene_slide_texels", texels)

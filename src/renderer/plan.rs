@@ -11,6 +11,7 @@ use crate::{
         accel::{SceneArrays, Trees},
         account, extents,
         eye::{self, EyeLayers, EyeScene, FrameData},
+        lamps::Lamps,
         light,
         scene::SceneBuffers,
     },
@@ -79,14 +80,18 @@ pub(super) fn plan_with(job: &Job, trees: &mut Trees) -> Result<Planned, RenderE
     let start = Instant::now();
     let camera = job.camera()?;
     let (scene, settings) = (&*job.scene, &job.settings);
-    let arrays = SceneArrays::build_with(scene, trees).map_err(PlanError::from)?;
+    let mut arrays = SceneArrays::build_with(scene, trees).map_err(PlanError::from)?;
+    let samples = job.eye_samples();
+    let seen = [eye::light_samples(settings, samples * samples), samples * samples];
+    let lamps = Lamps::of(scene, &arrays, settings.whole(&light::AREA_SAMPLES), seen)?;
+    arrays.lights.clone_from(&lamps.all);
     let everything = extents::everything(scene);
     let mut plan = Plan { moves: scene.moves(), ..Plan::default() };
     let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let frame = plan.buffer("frame", size_of::<FrameData>() as u64, Lifetime::Frame);
     let photons = photon_passes(&mut plan, job, (&arrays, &buffers), &everything)?;
-    let samples = job.eye_samples();
-    let from = EyeScene { scene, arrays: &arrays, buffers: &buffers, frame, camera, size: job.size, samples };
+    let from =
+        EyeScene { scene, arrays: &arrays, buffers: &buffers, lamps: &lamps, frame, camera, size: job.size, samples };
     let provided = photons.provided.as_ref().and_then(|p| p.surface.as_ref());
     let layers = eye::passes(&mut plan, &from, settings, provided);
     Ok(Planned {
@@ -141,22 +146,13 @@ fn photon_passes(
         }
         return Ok(PhotonPasses::default());
     };
-    let most = || emissions.iter().map(|e| e.most(scene, settings.whole(&light::SIDE))).fold(0.0, f64::max);
+    let most = || emissions.iter().map(light::Emission::most).fold(0.0, f64::max);
     let half = method.halves(settings).then(most);
-    let photons = light::photon_buffer(plan, settings, class, &method.columns(settings), half);
+    let photons =
+        light::photon_buffer(plan, settings, class, &method.columns(settings), half, &light::sides(&emissions));
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
-    let bench = light::Bench {
-        scene,
-        arrays,
-        buffers,
-        settings,
-        class,
-        emissions: &emissions,
-        views,
-        side: photons.side,
-        base: "light",
-    };
+    let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views, base: "light" };
     let tracer = light::Tracer::plan(plan, &bench)?;
     let mut work = methods::Job {
         plan,
@@ -166,7 +162,7 @@ fn photon_passes(
         size: job.size,
         everything,
         emissions: &emissions,
-        photons: &photons,
+        photons: &photons[0],
         bench: &bench,
         tracer: &tracer,
     };
@@ -174,8 +170,9 @@ fn photon_passes(
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {
         let name_of = |base: &str| light::view_name(base, scene, &emissions, index);
-        let tracing =
-            light::Tracing { scene: buffers, views, tracer: &tracer, class, photons: &photons, emission, index };
+        let own = photons.iter().find(|photons| photons.side == emission.side).unwrap_or(&photons[0]);
+        work.photons = own;
+        let tracing = light::Tracing { scene: buffers, views, tracer: &tracer, class, photons: own, emission, index };
         tracer.images(work.plan, &bench, Phase::Frame, index);
         light::photons(work.plan, &name_of("light/photons"), &tracing);
         planned.gather(&mut work, index, &name_of);
@@ -183,5 +180,5 @@ fn photon_passes(
         let name = name_of("light/account");
         accounts.push(account::account(work.plan, &name, &tracing, &planned.capture()));
     }
-    Ok(PhotonPasses { provided: Some(planned.provide()), accounts, bytes_each: photons.bytes_each() })
+    Ok(PhotonPasses { provided: Some(planned.provide()), accounts, bytes_each: photons[0].bytes_each() })
 }

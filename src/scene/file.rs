@@ -247,6 +247,10 @@ pub struct LightFile {
     pub point: Option<PointFile>,
     /// Light from a point within a cone.
     pub spot: Option<SpotFile>,
+    /// Light from one side of a rectangle, which itself is not seen.
+    pub quad: Option<QuadLightFile>,
+    /// Light from one side of a disk, which itself is not seen.
+    pub disk: Option<DiskLightFile>,
     /// Keys in time.
     pub motion: Option<LightMotionFile>,
 }
@@ -258,6 +262,38 @@ pub struct DirectionalFile {
     pub direction: Floats<3>,
     /// Of a plane that faces the light, W/m².
     pub irradiance: Colour,
+    /// Degrees that the light's disc measures across; the sun's are 0.53.
+    pub angular_diameter: Option<f64>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct QuadLightFile {
+    /// Of the rectangle.
+    pub center: Floats<3>,
+    /// Half edge.
+    pub u: Floats<3>,
+    /// Half edge, at right angles to u; u × v points to the side that shines.
+    pub v: Floats<3>,
+    /// W/m²/sr, the same in every direction; or `power`.
+    pub radiance: Option<Colour>,
+    /// Of all that it sends out, W; or `radiance`.
+    pub power: Option<Colour>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiskLightFile {
+    /// Of the disk.
+    pub center: Floats<3>,
+    /// To the side that shines.
+    pub normal: Floats<3>,
+    /// In lengths of the file.
+    pub radius: f64,
+    /// W/m²/sr, the same in every direction; or `power`.
+    pub radiance: Option<Colour>,
+    /// Of all that it sends out, W; or `radiance`.
+    pub power: Option<Colour>,
 }
 
 #[derive(Deserialize, JsonSchema)]

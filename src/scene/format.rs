@@ -59,7 +59,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
             "motion",
         ],
         ["materials", _] => &["diffuse", "dielectric", "mirror", "conductor"],
-        ["lights", _] => &["directional", "point", "spot", "motion"],
+        ["lights", _] => &["directional", "point", "spot", "quad", "disk", "motion"],
         ["cameras", _, "pinhole"] => &["position", "target", "up", "hides_specular", "fov_y"],
         ["cameras", _, "orthographic"] => &["position", "target", "up", "hides_specular", "height", "width"],
         ["objects", _, "sphere"] => &["center", "radius"],
@@ -93,11 +93,13 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
         ["materials", _, "dielectric"] => &["ior", "absorption"],
         ["materials", _, "mirror"] => &["reflectance"],
         ["materials", _, "conductor"] => &["eta", "k"],
-        ["lights", _, "motion"] => &["position", "direction", "irradiance", "intensity", "period"],
+        ["lights", _, "motion"] => &["position", "direction", "irradiance", "radiance", "intensity", "period"],
         ["imports", _] => &["file", "scale", "position", "rotate", "materials", "lights", "watts_per_lumen"],
-        ["lights", _, "directional"] => &["direction", "irradiance"],
+        ["lights", _, "directional"] => &["direction", "irradiance", "angular_diameter"],
         ["lights", _, "point"] => &["position", "intensity"],
         ["lights", _, "spot"] => &["position", "direction", "intensity", "inner", "image", "up", "outer"],
+        ["lights", _, "quad"] => &["center", "u", "v", "radiance", "power"],
+        ["lights", _, "disk"] => &["center", "normal", "radius", "radiance", "power"],
         _ => &[],
     }
 }
@@ -149,5 +151,7 @@ mod tests {
         assert_eq!(keys(&["lights", "", "directional"]), known::<file::DirectionalFile>());
         assert_eq!(keys(&["lights", "", "point"]), known::<file::PointFile>());
         assert_eq!(keys(&["lights", "", "spot"]), known::<file::SpotFile>());
+        assert_eq!(keys(&["lights", "", "quad"]), known::<file::QuadLightFile>());
+        assert_eq!(keys(&["lights", "", "disk"]), known::<file::DiskLightFile>());
     }
 }

@@ -1,10 +1,11 @@
-//! Lights: sources without size.
+//! Lights: what each sends, and where to; those with a size are in [`super::area`].
 use std::f64::consts::TAU;
 
 use glam::DVec3;
 
 use super::{
     Slide,
+    area::{self, Face},
     assets::Assets,
     error::SceneError,
     file::{LightFile, SpotFile},
@@ -14,7 +15,7 @@ use super::{
 /// Half angles of a spot's cone, degrees; of 180 it is a point light.
 const CONES: std::ops::RangeInclusive<f64> = 1e-3..=180.0;
 
-/// A source without size.
+/// What shines.
 #[derive(Clone, Debug)]
 pub struct Light {
     /// As in the file.
@@ -32,6 +33,31 @@ pub enum LightKind {
         direction: DVec3,
         /// W/m² on a plane that faces the light.
         irradiance: [f64; 3],
+    },
+    /// A disc of directions, alike in all of it: the sun.
+    Sun {
+        /// Unit vector along which the light of its middle travels.
+        direction: DVec3,
+        /// W/m² on a plane that faces its middle.
+        irradiance: [f64; 3],
+        /// Half its angular diameter, rad: above zero, at most a right angle.
+        radius: f64,
+    },
+    /// A flat surface that shines on one side. It shadows nothing, and is not seen.
+    Lamp {
+        /// Where it is.
+        face: Face,
+        /// W/m²/sr
+        radiance: [f64; 3],
+    },
+    /// What stands for a part of such a surface; no file has it.
+    Patch {
+        /// m
+        position: DVec3,
+        /// Unit vector to the side that shines.
+        normal: DVec3,
+        /// W/sr along the normal; it falls with the cosine.
+        intensity: [f64; 3],
     },
     /// The same in every direction.
     Point {
@@ -91,26 +117,41 @@ impl Beam {
 }
 
 impl LightKind {
-    /// Where a light that has a place is, m.
+    /// Where a light that has a place is, or its middle, m.
     pub fn position(&self) -> Option<DVec3> {
         match self {
-            Self::Directional { .. } => None,
-            Self::Point { position, .. } | Self::Spot { position, .. } => Some(*position),
+            Self::Directional { .. } | Self::Sun { .. } => None,
+            Self::Lamp { face, .. } => Some(face.center),
+            Self::Point { position, .. } | Self::Spot { position, .. } | Self::Patch { position, .. } => {
+                Some(*position)
+            }
         }
     }
 
-    /// Its irradiance (W/m²) or, on the axis, intensity (W/sr).
+    /// Its irradiance (W/m²), radiance (W/m²/sr) or, on the axis, intensity (W/sr).
     pub fn power(&self) -> [f64; 3] {
         match self {
-            Self::Directional { irradiance, .. } => *irradiance,
-            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => *intensity,
+            Self::Directional { irradiance, .. } | Self::Sun { irradiance, .. } => *irradiance,
+            Self::Lamp { radiance, .. } => *radiance,
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } | Self::Patch { intensity, .. } => *intensity,
+        }
+    }
+
+    /// What a file calls [`Self::power`].
+    pub(super) fn power_key(&self) -> &'static str {
+        match self {
+            Self::Directional { .. } | Self::Sun { .. } => "irradiance",
+            Self::Lamp { .. } => "radiance",
+            Self::Point { .. } | Self::Spot { .. } | Self::Patch { .. } => "intensity",
         }
     }
 
     /// What the light gives in all, W in each band; parallel light has no end.
     pub fn flux(&self) -> Option<[f64; 3]> {
         match self {
-            Self::Directional { .. } => None,
+            Self::Directional { .. } | Self::Sun { .. } => None,
+            Self::Lamp { face, radiance } => Some(radiance.map(|band| 0.5 * TAU * face.area() * band)),
+            Self::Patch { intensity, .. } => Some(intensity.map(|band| 0.5 * TAU * band)),
             Self::Point { intensity, .. } => Some(intensity.map(|band| 2.0 * TAU * band)),
             Self::Spot { intensity, beam, slide, .. } => {
                 let whole = || DVec3::splat(beam.solid_angle());
@@ -123,7 +164,9 @@ impl LightKind {
     /// Share of the power that goes along a unit vector, of each band.
     pub fn share(&self, d: DVec3) -> DVec3 {
         match self {
-            Self::Directional { .. } | Self::Point { .. } => DVec3::ONE,
+            Self::Directional { .. } | Self::Sun { .. } | Self::Point { .. } => DVec3::ONE,
+            Self::Lamp { face, .. } => DVec3::splat(face.normal().dot(d).max(0.0)),
+            Self::Patch { normal, .. } => DVec3::splat(normal.dot(d).max(0.0)),
             Self::Spot { beam, slide, .. } => {
                 let colour = slide.as_ref().map_or(DVec3::ONE, |slide| slide.share(beam.axis, d));
                 colour * beam.share(d)
@@ -133,23 +176,19 @@ impl LightKind {
 }
 
 pub(super) fn light(key: &Key, file: &LightFile, unit: f64, assets: &mut Assets) -> Result<LightKind, SceneError> {
-    match (&file.directional, &file.point, &file.spot) {
-        (Some(sun), None, None) => {
-            let key = key.key("directional");
-            Ok(LightKind::Directional {
-                direction: key.key("direction").direction(sun.direction)?,
-                irradiance: key.key("irradiance").strength(sun.irradiance, "an irradiance in W/m²")?,
-            })
-        }
-        (None, Some(point), None) => {
+    match (&file.directional, &file.point, &file.spot, &file.quad, &file.disk) {
+        (Some(sun), None, None, None, None) => area::directional(&key.key("directional"), sun),
+        (None, Some(point), None, None, None) => {
             let key = key.key("point");
             Ok(LightKind::Point {
                 position: key.key("position").point(point.position, unit)?,
                 intensity: key.key("intensity").strength(point.intensity, "an intensity in W/sr")?,
             })
         }
-        (None, None, Some(written)) => spot(&key.key("spot"), written, unit, assets),
-        _ => Err(key.one_kind(&["directional", "point", "spot"])),
+        (None, None, Some(written), None, None) => spot(&key.key("spot"), written, unit, assets),
+        (None, None, None, Some(written), None) => area::quad(&key.key("quad"), written, unit),
+        (None, None, None, None, Some(written)) => area::disk(&key.key("disk"), written, unit),
+        _ => Err(key.one_kind(&["directional", "point", "spot", "quad", "disk"])),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Scenes: what light meets, described once for every method, for the truth and for the eye.
 //!
 //! A scene is a TOML file (see `scenes/` for commented ones) or one of the [shipped](Scene::shipped) scenes. Units are
-//! metres, W/m² for directional lights and W/sr for point lights; the file's `unit` scales every length in it.
+//! metres, W/m² for directional lights, W/sr for point lights and W/m²/sr for surfaces that shine; the file's `unit` scales every length in it.
 //!
 //! A closed dielectric shape holds its medium inside. A dielectric quad, disk, sine, heights or wave is an open interface:
 //! its medium lies on the side its normal points away from (water under the air). Other open shapes bound no medium. A
@@ -11,6 +11,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
+mod area;
 mod assets;
 mod build;
 mod canonical;
@@ -52,6 +53,7 @@ mod written;
 
 use crate::names::NoSuch;
 
+pub use area::{Face, cap_height};
 pub use canonical::{Canonical, WHOLE};
 pub use class::{PathClass, PathClassError};
 pub use error::{Place, SceneError};

@@ -172,7 +172,13 @@ impl LightMotion {
             LightKind::Directional { direction, irradiance } => {
                 (*direction, *irradiance) = (way.unwrap_or(*direction), strength.unwrap_or(*irradiance));
             }
-            LightKind::Point { position, intensity } => {
+            LightKind::Sun { direction, irradiance, .. } => {
+                (*direction, *irradiance) = (way.unwrap_or(*direction), strength.unwrap_or(*irradiance));
+            }
+            LightKind::Lamp { face, radiance } => {
+                (face.center, *radiance) = (at.unwrap_or(face.center), strength.unwrap_or(*radiance));
+            }
+            LightKind::Point { position, intensity } | LightKind::Patch { position, intensity, .. } => {
                 (*position, *intensity) = (at.unwrap_or(*position), strength.unwrap_or(*intensity));
             }
             LightKind::Spot { position, intensity, beam, .. } => {
@@ -184,11 +190,10 @@ impl LightMotion {
     }
 
     fn moves(&self) -> Vec<&'static str> {
-        let power = if matches!(self.rest, LightKind::Directional { .. }) { "irradiance" } else { "intensity" };
         let all = [
             ("position", self.position.is_some()),
             ("direction", self.direction.is_some()),
-            (power, self.power.is_some()),
+            (self.rest.power_key(), self.power.is_some()),
         ];
         all.into_iter().filter_map(|(name, moves)| moves.then_some(name)).collect()
     }

@@ -95,12 +95,14 @@ pub struct WaveFile {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LightMotionFile {
-    /// Of a light that has a place.
+    /// Of a light that has a place; of a surface its `center`.
     position: Keys<Floats<3>>,
     /// Of a light that has one; it turns evenly.
     direction: Keys<Floats<3>>,
     /// Of a directional light, W/m².
     irradiance: Keys<Colour>,
+    /// Of a surface that shines, W/m²/sr.
+    radiance: Keys<Colour>,
     /// Of a point or a spot light, W/sr.
     intensity: Keys<Colour>,
     /// s; begins all keys again.
@@ -206,15 +208,18 @@ fn wave_of(key: &Key, file: &WaveFile, unit: f64) -> Result<Wave, SceneError> {
 pub fn light(key: &Key, light: &Light, file: &LightFile, unit: f64) -> Result<Option<LightMotion>, SceneError> {
     let Some(motion) = &file.motion else { return Ok(None) };
     let key = &key.key("motion");
-    let (kind, position, direction, power) = match light.kind {
-        LightKind::Directional { .. } => ("a directional light", false, true, "irradiance"),
-        LightKind::Point { .. } => ("a point light", true, false, "intensity"),
-        LightKind::Spot { .. } => ("a spot light", true, true, "intensity"),
+    let (kind, position, direction) = match light.kind {
+        LightKind::Directional { .. } | LightKind::Sun { .. } => ("a directional light", false, true),
+        LightKind::Point { .. } | LightKind::Patch { .. } => ("a point light", true, false),
+        LightKind::Spot { .. } => ("a spot light", true, true),
+        LightKind::Lamp { .. } => ("a surface that shines", true, false),
     };
+    let power = light.kind.power_key();
     let given = [
         ("position", motion.position.is_some(), position),
         ("direction", motion.direction.is_some(), direction),
         ("irradiance", motion.irradiance.is_some(), power == "irradiance"),
+        ("radiance", motion.radiance.is_some(), power == "radiance"),
         ("intensity", motion.intensity.is_some(), power == "intensity"),
     ];
     if given.iter().all(|(_, given, _)| !given) {
@@ -226,7 +231,11 @@ pub fn light(key: &Key, light: &Light, file: &LightFile, unit: f64) -> Result<Op
         return Err(key.key(name).fault(format!("a key of {kind}"), format!("`{name}`"), remedy));
     }
     let strength = |key: &Key, value: Colour| key.strength(value, "a power as the light's own");
-    let shines = if power == "irradiance" { &motion.irradiance } else { &motion.intensity };
+    let shines = match power {
+        "irradiance" => &motion.irradiance,
+        "radiance" => &motion.radiance,
+        _ => &motion.intensity,
+    };
     let direction = track(key, "direction", &motion.direction, |key, value| key.direction(value).map(Direction))?;
     refuse_opposite(key, &motion.direction)?;
     Ok(Some(LightMotion {

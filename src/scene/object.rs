@@ -85,7 +85,7 @@ pub fn wave(key: &Key, file: &WaveFile, unit: f64) -> Result<WaveSheet, SceneErr
 }
 
 /// Centre and half edges at right angles.
-fn rectangle(key: &Key, [center, u, v]: [Floats<3>; 3], unit: f64) -> Result<[DVec3; 3], SceneError> {
+pub fn rectangle(key: &Key, [center, u, v]: [Floats<3>; 3], unit: f64) -> Result<[DVec3; 3], SceneError> {
     let center = key.key("center").point(center, unit)?;
     let (u, v) = (key.key("u").edge(u, unit)?, key.key("v").edge(v, unit)?);
     let cosine = u.normalize().dot(v.normalize());

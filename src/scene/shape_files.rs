@@ -114,10 +114,21 @@ pub fn cuboid(key: &Key, file: &BoxFile, unit: f64) -> Result<Shape, SceneError>
 }
 
 pub fn disk(key: &Key, file: &DiskFile, unit: f64) -> Result<Shape, SceneError> {
-    let center = key.key("center").point(file.center, unit)?;
-    let normal = key.key("normal").direction(file.normal)?;
-    let radius = key.key("radius").size(file.radius, unit)?;
-    Ok(placed(Canonical::Disk, frame(normal, None) * radius, center))
+    let (center, frame) = disk_frame(key, [file.center, file.normal], file.radius, unit)?;
+    Ok(placed(Canonical::Disk, frame, center))
+}
+
+/// Centre of a disk, and its axes: two radii, and the normal as long.
+pub fn disk_frame(
+    key: &Key,
+    [center, normal]: [Floats<3>; 2],
+    radius: f64,
+    unit: f64,
+) -> Result<(DVec3, DMat3), SceneError> {
+    let center = key.key("center").point(center, unit)?;
+    let normal = key.key("normal").direction(normal)?;
+    let radius = key.key("radius").size(radius, unit)?;
+    Ok((center, frame(normal, None) * radius))
 }
 
 pub fn cylinder(key: &Key, file: &CylinderFile, unit: f64) -> Result<Shape, SceneError> {

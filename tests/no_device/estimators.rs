@@ -176,3 +176,33 @@ fn through_a_pinhole() {
 fn by_every_path() {
     hold("glass-sphere", Some(PathClass::All(8)), "region", 76_000, 64);
 }
+
+/// Share of their flux that few cells, each for one point of a light, may leave unresolved: those about a focus.
+const FEW_CELLS: f64 = 0.1;
+
+/// Photons start anywhere on a light with a size, cells at 64 points of it, by another map from the square.
+fn hold_area(kind: &str, lamp: &str) {
+    let scene = Scene::load("glass-sphere", &[("lights.sun".to_owned(), lamp.to_owned())]).unwrap();
+    let e0 = bare_irradiance(&scene);
+    let (layers, about) = run(&scene, &task(Estimator::Cells, scene.paths, "region", 0, 64 * 64));
+    let counted = photons(&scene, scene.paths, "region", 20_000);
+    let (mut sums, mut worst) = ([0.0; 2], 0.0f64);
+    for (cell, counted) in blocks(&layers).into_iter().zip(counted) {
+        let (Some(cell), Some((mean, error))) = (cell, counted) else { panic!("{kind}: the region is bare") };
+        sums = [sums[0] + cell, sums[1] + mean];
+        worst = worst.max((cell - mean).abs() / (ERRORS * error).max(OF_E0 * e0));
+    }
+    let (total, unresolved) = (sums[0] / sums[1] - 1.0, about["cells.unresolved"].parse::<f64>().unwrap());
+    println!("{kind}: total {total:+.5}, worst block {worst:.2} of what is allowed, unresolved {unresolved:.3}");
+    assert!(total.abs() <= TOTAL && worst <= 1.0 && unresolved <= FEW_CELLS, "{kind}: {total} {worst} {unresolved}");
+}
+
+#[test]
+fn under_a_sun_of_five_degrees() {
+    hold_area("sun", "{ directional = { direction = [0, -1, 0], irradiance = 1, angular_diameter = 5 } }");
+}
+
+#[test]
+fn under_a_rectangle_that_shines() {
+    hold_area("quad", "{ quad = { center = [0.5, 4, 0], u = [0.2, 0.1, 0], v = [0, 0, 0.3], power = 20 } }");
+}

@@ -18,7 +18,7 @@ const SIDE: u32 = 64;
 const SETTINGS: [(&str, &str); 2] = [("light.side", "512"), ("maps.side", "256")];
 
 /// A shipped scene under other lights, in the words of the file.
-fn under(name: &str, lights: &str) -> Scene {
+pub fn under(name: &str, lights: &str) -> Scene {
     let sun = rewritten(name, &[], "");
     let (above, _) = sun.split_once("[lights.sun").expect("a sun");
     written(&format!("{above}{lights}"), &[])

@@ -8,6 +8,7 @@ mod common;
 mod made;
 
 mod all_paths;
+mod area_lights;
 mod closed_forms;
 mod dispersion;
 mod energy;

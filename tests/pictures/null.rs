@@ -66,7 +66,7 @@ impl Null<'_> {
                 direct_parallel(direction, self.region.normal(), irradiance[0])
             }
             LightKind::Point { position, intensity } => direct_point(position, intensity[0], p, self.region.normal()),
-            LightKind::Spot { .. } => unreachable!("spots vanish in `lights`"),
+            _ => unreachable!("others vanish in `lights`"),
         }
     }
 
@@ -74,7 +74,7 @@ impl Null<'_> {
     fn travel(&self, p: DVec3) -> DVec3 {
         match self.light {
             LightKind::Directional { direction, .. } => direction,
-            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => (p - position).normalize(),
+            _ => (p - self.light.position().expect("a place")).normalize(),
         }
     }
 

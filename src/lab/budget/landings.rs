@@ -55,7 +55,7 @@ impl Method for Landings {
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
         let view = eye::view(&job.scene.cameras[REGION], job.size, job.everything);
         let pixels = pixels(job.size);
-        let unit = light::flux_unit(job.scene, job.emissions, job.photons.side);
+        let unit = light::flux_unit(job.emissions);
         Ok(Box::new(Binning {
             size: job.size,
             view: job.plan.upload("budget/view", &[view.data()]),

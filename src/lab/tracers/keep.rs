@@ -63,6 +63,13 @@ impl Method for Keep {
 
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
         let (side, layers) = (job.photons.side, job.emissions.len() as u32);
+        if job.emissions.iter().any(|emission| emission.side != side) {
+            return Err(PlanError::Refused {
+                what: "a comparison of tracers with lights that have a size beside others that have none".into(),
+                reason: "their views are not as fine, and texels are held against texels".into(),
+                remedy: "set light.area_samples=1, or compare each light in a scene of its own".into(),
+            });
+        }
         let image = |name| job.plan.image_array(name, [side; 2], layers, Format::Rgba32f, Lifetime::Frame);
         Ok(Box::new(Keeping { images: KEPT.map(|(_, name, _)| name).map(image) }))
     }

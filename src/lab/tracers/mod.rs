@@ -62,7 +62,8 @@ pub fn compare_tracers(
         if watch(tracer).is_break() { Err(LabError::Interrupted) } else { Ok(traced(gpu, job, tracer, repeat)) }
     };
     let (exact, stages) = trace(REFERENCE)??;
-    let side = job.settings.whole(&SIDE) as usize;
+    // Of a light with a size, each point has its share of the photons.
+    let side = exact.first().map_or(job.settings.whole(&SIDE) as usize, |view| view.len().isqrt());
     let mut all = Vec::new();
     for &tracer in TRACER.words {
         let tested = if tracer == REFERENCE { Ok((exact.clone(), stages.clone())) } else { trace(tracer)? };

@@ -52,7 +52,8 @@ impl TracersReport {
             schema: "nephroid.tracers/1",
             scene: subject.scene,
             class: subject.class,
-            side: subject.side,
+            // Of a light with a size, each view has its share.
+            side: compared.first().map_or(subject.side, |one| one.side as u32),
             map_texel_m: subject.map_texel,
             frames: subject.frames,
             provenance,

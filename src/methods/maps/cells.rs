@@ -125,7 +125,8 @@ impl Cells {
                 "the tracer's images show no more than the centres of their texels: cells cut by an edge go as points",
             );
         }
-        let samples = (cells + u64::from(corners.photons.side).pow(2)) * count as u64;
+        let each = |side: u32| u64::from(side).pow(2) + u64::from(side + 1).pow(2);
+        let samples = job.emissions.iter().map(|emission| each(emission.side)).sum();
         let buffer = job.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);
         let diameter = job.settings.whole(&SPLAT_SIZE) as f32;
         Ok(Some(Self {
@@ -145,10 +146,11 @@ impl Cells {
         self.corners.trace(job.plan, job.bench, view);
         let emission = &job.emissions[view];
         let (side, diameter) = (self.side as i32, self.diameter);
-        let push = CellsPush { side, diameter, light: emission.light as u32, view: view as u32 };
+        let push = CellsPush { side, diameter, light: emission.lamp, view: view as u32 };
         let groups = job.photons.side.div_ceil(GROUP);
         let pass = self.give(fixed, job.plan.pass(&name_of("maps/cells")));
-        let pass = pass.with(job.photons.fetch(COLUMNS)).with(self.corners()).read("maps_views", self.views);
+        let pass =
+            pass.with(job.photons.fetch(COLUMNS)).with(self.corners(emission.side)).read("maps_views", self.views);
         let pass = self.list.into_iter().fold(pass, |pass, list| pass.define("REFINED", 1).write("cells_list", list));
         pass.push(&push).dispatch("maps/cells.comp", [groups, groups, 1], GROUP * GROUP);
         if let Some(list) = self.list {
@@ -181,8 +183,9 @@ impl Cells {
         fixed.give(pass).write("cells_counts", self.counts).write("cells_large", self.large)
     }
 
-    fn corners(&self) -> impl Iterator<Item = (&'static str, Resource)> {
-        let column = |name, column| Some((name, Resource::Image(self.corners.photons.column(column)?)));
+    fn corners(&self, side: u32) -> impl Iterator<Item = (&'static str, Resource)> {
+        let photons = self.corners.photons(side);
+        let column = |name, column| Some((name, Resource::Image(photons.column(column)?)));
         [column("corners_hit", Column::Hit), column("corners_way", Column::Way)].into_iter().flatten()
     }
 

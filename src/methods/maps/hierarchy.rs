@@ -2,16 +2,20 @@
 //! streamed out of a geometry shader and drawn again by their byte count; what holds no valid photon goes at once.
 
 use super::{Axes, Column, Job, TOP};
-use crate::gpu::{BufferId, Draw, Format, ImageId, Lifetime, PassBuilder, Resource, Stream, Topology};
+use crate::{
+    gpu::{BufferId, Draw, Format, ImageId, Lifetime, PassBuilder, Resource, Stream, Topology},
+    passes::light,
+};
 
 /// Invocations along one side of work groups.
 const GROUP: u32 = 8;
 /// A point (`glsl/maps/stream_point.glsl`).
 const POINT: Format = Format::Rg32u;
 
-/// The pyramid over the photons, and the two streams that feed each other. All views share them.
+/// The pyramid over the photons, and the two streams that feed each other. All views of one size share them.
 pub struct Hierarchy {
-    side: u32,
+    /// Photons a side.
+    pub side: u32,
     layers: u32,
     /// Above the photons.
     levels: u32,
@@ -46,19 +50,27 @@ fn level_side(side: u32, level: u32) -> u32 {
 }
 
 impl Hierarchy {
-    /// Images and buffers; `None` where photons are not traversed so, or are so few that their topmost level is they
-    /// themselves: they are fetched then.
-    pub fn plan(job: &mut Job<'_>, axes: Axes<'_>) -> Option<Self> {
+    /// Images and buffers, for each size of view; none where photons are not traversed so, or are so few that their topmost
+    /// level is they themselves: they are fetched then.
+    pub fn plan(job: &mut Job<'_>, axes: Axes<'_>) -> Vec<Self> {
         if !axes.streams() {
-            return None;
+            return Vec::new();
         }
-        let (side, layers) = (job.photons.side, job.photons.layers());
-        let top = job.settings.whole(&TOP);
-        let levels = (0..u32::BITS - 1).find(|&level| level_side(side, level) <= top).unwrap_or(0);
-        if levels == 0 {
+        let sides = light::sides(job.emissions);
+        let all: Vec<Self> = sides.iter().filter_map(|&side| Self::of(job, axes, &sides, side)).collect();
+        if all.is_empty() {
+            let side = job.photons.side;
             let reason =
                 format!("{side} photons a side are no more than the topmost level's (maps.top): they are fetched");
             ["maps/pyramid", "maps/traverse"].iter().for_each(|name| job.plan.leave_out(name, reason.clone()));
+        }
+        all
+    }
+
+    fn of(job: &mut Job<'_>, axes: Axes<'_>, sides: &[u32], side: u32) -> Option<Self> {
+        let (top, layers) = (job.settings.whole(&TOP), job.photons.layers());
+        let levels = (0..u32::BITS - 1).find(|&level| level_side(side, level) <= top).unwrap_or(0);
+        if levels == 0 {
             return None;
         }
         let merges = axes.merge != "none";
@@ -70,14 +82,14 @@ impl Hierarchy {
         // As `pyramid_place` of `glsl/maps/levels.glsl` lays them out.
         let extent = [level_side(side, 1), 2 * (level_side(side, 1) + levels)];
         let mut image = |name: &str, format| {
-            let name = format!("maps/{}", name.replace('_', "."));
+            let name = light::sized(&format!("maps/{}", name.replace('_', ".")), sides, side);
             job.plan.image_array(&name, extent, layers, format, Lifetime::Frame)
         };
         let pyramid = columns.iter().map(|&(name, format)| (name, image(name, format))).collect();
         let mut stream = |level: u32| {
             // What a level's step leaves is of the level below, whose texels are the worst case.
             let points = u64::from(level_side(side, level - 1)).pow(2) * u64::from(layers);
-            let name = format!("maps/stream.{}", level % 2);
+            let name = light::sized(&format!("maps/stream.{}", level % 2), sides, side);
             Stream {
                 vertices: job.plan.buffer(&name, points * POINT.bytes(), Lifetime::Frame),
                 counter: job.plan.buffer(&format!("{name}.bytes"), 4, Lifetime::Frame),

@@ -195,7 +195,7 @@ impl Method for Maps {
             cells,
             fixed,
             vertices: Vertices::plan(job),
-            hierarchy: Hierarchy::plan(job, axes),
+            hierarchies: Hierarchy::plan(job, axes),
             culls: culls(job.settings, axes),
             drawn: false,
         }))
@@ -215,7 +215,8 @@ struct PlannedMaps {
     cells: Option<Cells>,
     fixed: Option<Fixed>,
     vertices: Option<Vertices>,
-    hierarchy: Option<Hierarchy>,
+    /// One for each size of view, where photons are traversed so.
+    hierarchies: Vec<Hierarchy>,
     culls: bool,
     drawn: bool,
 }
@@ -223,6 +224,10 @@ struct PlannedMaps {
 impl PlannedMaps {
     fn views(&self) -> (&'static str, Resource) {
         ("maps_views", Resource::Buffer(self.views))
+    }
+
+    fn hierarchy(&self, photons: &Photons) -> Option<&Hierarchy> {
+        self.hierarchies.iter().find(|hierarchy| hierarchy.side == photons.side)
     }
 
     /// Ends a pass over the photons of a view with points.
@@ -235,7 +240,7 @@ impl PlannedMaps {
             return pass.draw(&["maps/gather_copy.vert", "maps/splat.frag"], Topology::Points, all);
         }
         let pass = pass.with(photons.fetch(self.splats.columns()));
-        if let Some(hierarchy) = &self.hierarchy {
+        if let Some(hierarchy) = self.hierarchy(photons) {
             return hierarchy.draw(pass, &["maps/gather_stream.vert", "maps/splat.frag"]);
         }
         let all = points(n, n * layers);
@@ -264,15 +269,15 @@ impl Planned for PlannedMaps {
         if let Some(vertices) = &self.vertices {
             vertices.fill(job, &name_of("maps/copy"));
         }
-        if let Some(hierarchy) = &self.hierarchy {
-            let light = job.emissions[view].light as u32;
+        let light = job.emissions[view].lamp;
+        if let Some(hierarchy) = self.hierarchy(job.photons) {
             hierarchy.traverse(job, light, (self.splats.side, self.views), name_of);
         }
         let first = !std::mem::replace(&mut self.drawn, true);
         for (at, &map) in self.maps.iter().enumerate() {
             let number = if self.maps.len() > 1 { format!(".{at}") } else { String::new() };
             let name = name_of(&format!("maps/gather{number}"));
-            let (photons, light) = (job.photons, job.emissions[view].light);
+            let photons = job.photons;
             let pass = photons.define(job.plan.pass(&name)).with([self.views()]);
             let pass = self.splats.tell(job.settings, light, at, pass);
             let Some(fixed) = &self.fixed else {

@@ -92,13 +92,13 @@ impl Splats {
     }
 
     /// Tells a pass that splats photons of a light into the map of that number.
-    pub fn tell<'p>(self, settings: &Settings, light: usize, map: usize, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+    pub fn tell<'p>(self, settings: &Settings, light: u32, map: usize, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         let varying = ["varying", "thin-lens"].contains(&self.kind);
         let push = SplatPush {
             side: self.side as i32,
             diameter: (self.diameter << map) as f32,
             threshold: settings.real(&LEVEL_THRESHOLD).unwrap_or(f64::INFINITY) as f32,
-            light: light as u32,
+            light,
         };
         let wanted = [
             ("VARYING", varying),

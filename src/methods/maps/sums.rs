@@ -34,7 +34,7 @@ pub fn fixed(job: &mut Job<'_>, axes: Axes<'_>, side: u32, layers: u32) -> Optio
         }
         _ => {
             let sums = job.plan.upload_once("maps/sums", &vec![0u8; bytes as usize]);
-            let unit = light::flux_unit(job.scene, job.emissions, job.photons.side);
+            let unit = light::flux_unit(job.emissions);
             return Some(Fixed { sums, unit: job.plan.upload("maps/unit", &[unit.recip() as f32, unit as f32]) });
         }
     };

@@ -25,13 +25,13 @@ pub struct MapView {
 }
 
 /// Views that receive: one over each receiver's rectangle, which all lights share and which holds that receiver's light
-/// alone; in `shared` mode each light's own view, which holds whatever it sees, as in the paper.
+/// alone; in `shared` mode each light's own view (or each of its points'), which holds whatever it sees, as in the paper.
 ///
 /// A margin of half a splat and a texel keeps every splat whole that reaches into the rectangle. Where the receiver
 /// ends before, so does the map, and splats cut there are normalised: no light leaks over the receiver's edge.
 pub fn receiving(job: &Job<'_>, side: u32, diameter: u32) -> Vec<MapView> {
     if job.settings.choice(&light::VIEW) == "shared" {
-        let of = |e: &Emission| MapView { view: e.view.data(), receiver: ANY, light: e.light as u32 };
+        let of = |e: &Emission| MapView { view: e.view.data(), receiver: ANY, light: e.lamp };
         // Bands that are traced apart share their light's layer.
         return job.emissions.iter().filter(|e| matches!(e.band, None | Some(0))).map(of).collect();
     }

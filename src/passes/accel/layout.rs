@@ -109,13 +109,13 @@ pub struct TriangleCoordinates {
 pub struct Light {
     /// One of `LIGHT_*`.
     pub kind: u32,
-    /// Directional: unit direction of travel; point and spot: position, m.
+    /// Directional: unit direction of travel; of others, position, m.
     pub vector: [f32; 3],
-    /// Directional: W/m² on a plane facing it; point: W/sr; spot: W/sr on its axis.
+    /// Directional: W/m² on a plane facing it; point: W/sr; spot and patch: W/sr on the axis.
     pub power: [f32; 3],
     /// About a point light ([`packed_media`]).
     pub media: u32,
-    /// Spot: unit axis.
+    /// Spot and patch: unit axis.
     pub axis: [f32; 3],
     /// 1 − cosine of the half angle up to which all of the power goes; of a light that is no spot, of all directions.
     pub inner: f32,
@@ -181,3 +181,5 @@ pub const MATERIAL_CONDUCTOR: u32 = 3;
 pub const LIGHT_DIRECTIONAL: u32 = 0;
 /// Light from a point.
 pub const LIGHT_POINT: u32 = 1;
+/// Light from a point of a surface: it falls with the cosine to the axis.
+pub const LIGHT_PATCH: u32 = 2;

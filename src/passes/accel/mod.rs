@@ -52,7 +52,7 @@ pub struct SceneArrays {
     pub instances: Vec<Instance>,
     /// As [`Scene::materials`].
     pub materials: Vec<Material>,
-    /// As [`Scene::lights`].
+    /// As [`Scene::lights`], those without a size.
     pub lights: Vec<Light>,
     /// Of the materials and slides.
     pub textures: Arc<Textures>,
@@ -112,7 +112,8 @@ impl SceneArrays {
             ),
             lights: filled(
                 (scene.lights.iter().zip(slide_of))
-                    .map(|(one, slide)| Ok(Light { slide, ..light(scene, one)? }))
+                    .filter(|(one, _)| !one.kind.has_area())
+                    .map(|(one, slide)| Ok(Light { slide, ..light(scene, &one.name, &one.kind)? }))
                     .collect::<Result<_, AccelError>>()?,
             ),
             slides,
@@ -232,22 +233,25 @@ fn material(material: &SceneMaterial) -> Result<Material, AccelError> {
     })
 }
 
-/// Parallel light has no place: it comes through air. A spot is a point light with a beam.
-fn light(scene: &Scene, light: &crate::scene::Light) -> Result<Light, AccelError> {
-    let (kind, at) = match light.kind {
-        LightKind::Directional { direction, .. } => (LIGHT_DIRECTIONAL, direction),
-        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => (LIGHT_POINT, position),
+/// Parallel light has no place: it comes through air. A spot is a point light with a beam. What has a size is as its middle.
+pub fn light(scene: &Scene, name: &str, light: &LightKind) -> Result<Light, AccelError> {
+    let (kind, at) = match light {
+        LightKind::Directional { direction, .. } | LightKind::Sun { direction, .. } => (LIGHT_DIRECTIONAL, *direction),
+        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => (LIGHT_POINT, *position),
+        LightKind::Patch { position, .. } => (LIGHT_PATCH, *position),
+        LightKind::Lamp { face, .. } => (LIGHT_PATCH, face.center),
     };
-    let (axis, inner, outer) = match light.kind {
+    let (axis, inner, outer) = match light {
         LightKind::Spot { beam, .. } => (beam.axis, beam.inner as f32, beam.outer as f32),
+        LightKind::Patch { normal, .. } => (*normal, ALL_DIRECTIONS, ALL_DIRECTIONS),
         _ => (DVec3::Y, ALL_DIRECTIONS, ALL_DIRECTIONS),
     };
     Ok(Light {
         kind,
-        vector: vector(&light.name, "its place or direction", at)?,
-        power: vector(&light.name, "its power", light.kind.power().into())?,
-        media: packed_media(&light.kind.position().map_or(vec![], |p| scene.media_at(p))),
-        axis: vector(&light.name, "its axis", axis)?,
+        vector: vector(name, "its place or direction", at)?,
+        power: vector(name, "its power", light.power().into())?,
+        media: packed_media(&light.position().map_or(vec![], |p| scene.media_at(p))),
+        axis: vector(name, "its axis", axis)?,
         inner,
         outer,
         slide: 0,

@@ -39,6 +39,7 @@ fn constants_agree_with_the_shaders() {
         ("MATERIAL_MIRROR", MATERIAL_MIRROR),
         ("MATERIAL_CONDUCTOR", MATERIAL_CONDUCTOR),
         ("LIGHT_DIRECTIONAL", LIGHT_DIRECTIONAL),
+        ("LIGHT_PATCH", LIGHT_PATCH),
         ("LIGHT_POINT", LIGHT_POINT),
     ] {
         assert!(scene.contains(&format!("const uint {name} = {value}u;")), "{name}");

@@ -3,7 +3,7 @@
 //! They are the centres of the texels of a view that is half a texel wider on every side, so that every tracer takes them
 //! as it takes others.
 
-use super::{Bench, Column, Emission, Photons, Tracer, Tracing, photons, view_name};
+use super::{Bench, Column, Emission, Photons, Tracer, Tracing, photons, sides, sized, view_name};
 use crate::{
     gpu::{BufferId, Phase, Plan},
     passes::PlanError,
@@ -18,20 +18,26 @@ pub struct Corners {
     emissions: Vec<Emission>,
     views: BufferId,
     tracer: Tracer,
-    /// Their photons: one more a side than the view has texels.
-    pub photons: Photons,
+    /// Their photons, for each size of view.
+    photons: Vec<Photons>,
 }
 
 impl Corners {
     /// Adds the buffers that all views share, and what the tracer needs.
     pub fn plan(plan: &mut Plan, bench: &Bench<'_>, columns: &[Column]) -> Result<Self, PlanError> {
-        let wider = |e: &Emission| Emission { view: wider(e.view, bench.side), ..*e };
+        let wider = |e: &Emission| Emission { view: wider(e.view, e.side), side: e.side + 1, ..*e };
         let emissions: Vec<_> = bench.emissions.iter().map(wider).collect();
         let views = plan.upload("light/corners.views", &emissions.iter().map(|e| e.view.data()).collect::<Vec<_>>());
-        let side = bench.side + 1;
-        let photons = Photons::single(plan, BASE, side, columns);
+        let sides = sides(&emissions);
+        let photons =
+            sides.iter().map(|side| Photons::single(plan, &sized(BASE, &sides, *side), *side, columns)).collect();
         let tracer = Tracer::plan(plan, &bench_of(bench, &emissions, views))?;
         Ok(Self { emissions, views, tracer, photons })
+    }
+
+    /// The corners of a view of so many texels a side: one more.
+    pub fn photons(&self, side: u32) -> &Photons {
+        self.photons.iter().find(|photons| photons.side == side + 1).unwrap_or(&self.photons[0])
     }
 
     /// Adds the passes that trace those of one view.
@@ -43,7 +49,7 @@ impl Corners {
             views: self.views,
             tracer: &self.tracer,
             class: bench.class,
-            photons: &self.photons,
+            photons: self.photons(bench.emissions[index].side),
             emission: &self.emissions[index],
             index,
         };
@@ -52,7 +58,7 @@ impl Corners {
 }
 
 fn bench_of<'a>(bench: &Bench<'a>, emissions: &'a [Emission], views: BufferId) -> Bench<'a> {
-    Bench { emissions, views, side: bench.side + 1, base: BASE, ..*bench }
+    Bench { emissions, views, base: BASE, ..*bench }
 }
 
 /// Wider by half a texel on each side.

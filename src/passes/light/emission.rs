@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::VIEW;
+use super::{AREA_SAMPLES, SIDE, VIEW};
 use crate::{
     passes::{PlanError, extents},
-    scene::{Beam, LightKind, Region, Scene},
+    scene::{Beam, Face, LightKind, Region, Scene},
     settings::Settings,
     view::{Extent, View},
 };
@@ -15,67 +15,128 @@ use crate::{
 pub struct Emission {
     /// The light.
     pub light: usize,
+    /// Which of the shaders' lights it is, by [`Lamps`](crate::passes::lamps::Lamps): of a light with a size, one of its
+    /// points.
+    pub lamp: u32,
+    /// Where that is, m; parallel light has no place.
+    pub position: Option<DVec3>,
     /// Its view.
     pub view: View,
     /// The band it sends, where the scene bends bands apart; else all.
     pub band: Option<usize>,
+    /// Photons a side.
+    pub side: u32,
+    /// W/m² on a plane that faces it, or W/sr: of its brightest band, in its brightest direction.
+    pub(super) brightest: f64,
 }
 
 impl Emission {
-    /// At most what a photon of the view carries, W, of `side` a side: the widest texel's footprint in the light's
-    /// brightest band and direction.
-    pub fn most(&self, scene: &Scene, side: u32) -> f64 {
-        let power = match scene.lights[self.light].kind {
-            LightKind::Directional { irradiance, .. } => irradiance,
-            LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
-        };
-        let window = (self.view.high - self.view.low).abs() / f64::from(side);
-        power.into_iter().fold(0.0, f64::max) * window.x * window.y
+    /// At most what a photon of the view carries, W: the widest texel's footprint in the light's brightest band and
+    /// direction.
+    pub fn most(&self) -> f64 {
+        let window = (self.view.high - self.view.low).abs() / f64::from(self.side);
+        self.brightest * window.x * window.y
     }
+}
+
+/// Photons a side of each of `count` views that share the photons of one.
+fn shared_side(side: u32, count: u32) -> u32 {
+    ((f64::from(side) / f64::from(count).sqrt()).round() as u32).max(1)
+}
+
+/// Photons a side that there are, the most first: views of one size share a photon buffer.
+pub fn sides(emissions: &[Emission]) -> Vec<u32> {
+    let mut sides: Vec<u32> = emissions.iter().map(|emission| emission.side).collect();
+    sides.sort_unstable_by(|a, b| b.cmp(a));
+    sides.dedup();
+    sides
+}
+
+/// The name of an image of `side` a side: plain of the most photons, else with the side.
+pub fn sized(name: &str, sides: &[u32], side: u32) -> String {
+    if sides.first() == Some(&side) { name.to_owned() } else { format!("{name}.{side}") }
 }
 
 /// The emission views of every light: none where nothing is specular or a light has no power. Where the scene moves, a
 /// light that reaches nothing now keeps its views, which then see nothing: it may reach something at another time.
+///
+/// Of a light with a size so many points emit as `light.area_samples` says, each by views of its own with its share of the
+/// light's photons.
 pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Result<Vec<Emission>, PlanError> {
     let specular = extents::specular(scene);
     if specular.is_empty() {
         return Ok(Vec::new());
     }
     let shared = settings.choice(&VIEW) == "shared";
-    let everything = extents::everything(scene);
     let mut content = specular;
     if shared {
         content.join(&extents::of_region(receiver));
     }
+    let field = Field { scene, shared, content, everything: extents::everything(scene) };
+    let (side, count) = (settings.whole(&SIDE), settings.whole(&AREA_SAMPLES));
+    let plain = scene.lights.iter().filter(|light| !light.kind.has_area()).count() as u32;
+    let [mut next, mut next_of_area] = [0, plain];
     let mut all = Vec::new();
     for (light, lamp) in scene.lights.iter().enumerate() {
-        let dark = lamp.kind.power() == [0.0; 3];
-        if dark && !scene.moves() {
-            continue;
-        }
-        let views = match lamp.kind {
-            LightKind::Directional { direction, .. } => vec![View::orthographic(direction, &content, &everything)],
-            LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
-                match View::perspective(position, &content, &everything) {
-                    Some(view) => vec![view],
-                    None if shared => return Err(no_one_frustum(&lamp.name)),
-                    None => View::cube(position, &everything).to_vec(),
-                }
+        let (next, side) = match lamp.kind.has_area() {
+            true => (&mut next_of_area, shared_side(side, count)),
+            false => (&mut next, side),
+        };
+        for source in lamp.kind.samples(count) {
+            let brightest = source.power().into_iter().fold(0.0, f64::max);
+            let bands: &[Option<usize>] = if scene.is_dispersive() { &[Some(0), Some(1), Some(2)] } else { &[None] };
+            for view in field.views(&source, &lamp.name)? {
+                let (lamp, position) = (*next, source.position());
+                all.extend(bands.iter().map(|&band| Emission { light, lamp, position, view, band, side, brightest }));
             }
+            *next += 1;
+        }
+    }
+    Ok(all)
+}
+
+/// What views must hold.
+struct Field<'a> {
+    scene: &'a Scene,
+    shared: bool,
+    content: Extent,
+    everything: Extent,
+}
+
+impl Field<'_> {
+    /// The views of a light without size.
+    fn views(&self, source: &LightKind, name: &str) -> Result<Vec<View>, PlanError> {
+        let Self { scene, shared, content, everything } = self;
+        let dark = source.power() == [0.0; 3];
+        if dark && !scene.moves() {
+            return Ok(Vec::new());
+        }
+        let views = match source {
+            LightKind::Directional { direction, .. } | LightKind::Sun { direction, .. } => {
+                vec![View::orthographic(*direction, content, everything)]
+            }
+            LightKind::Lamp { face: Face { center: position, .. }, .. }
+            | LightKind::Patch { position, .. }
+            | LightKind::Point { position, .. }
+            | LightKind::Spot { position, .. } => match View::perspective(*position, content, everything) {
+                Some(view) => vec![view],
+                None if *shared => return Err(no_one_frustum(name)),
+                None => View::cube(*position, everything).to_vec(),
+            },
         };
         let lit = |view: View| {
-            let reached = match lamp.kind {
+            let reached = match source {
                 _ if dark => None,
-                LightKind::Spot { position, beam, .. } if !shared => beam_view(view, position, &beam, &content),
+                LightKind::Spot { position, beam, .. } if !shared => beam_view(view, *position, beam, content),
+                LightKind::Patch { position, normal, .. } => {
+                    (content.along(*normal).1 > position.dot(*normal)).then_some(view)
+                }
                 _ => Some(view),
             };
             reached.or_else(|| scene.moves().then(|| view.of_nothing()))
         };
-        let bands: &[Option<usize>] = if scene.is_dispersive() { &[Some(0), Some(1), Some(2)] } else { &[None] };
-        let each = |view: View| bands.iter().map(move |&band| Emission { light, view, band });
-        all.extend(views.into_iter().filter_map(lit).flat_map(each));
+        Ok(views.into_iter().filter_map(lit).collect())
     }
-    Ok(all)
 }
 
 fn no_one_frustum(light: &str) -> PlanError {

@@ -4,7 +4,11 @@
 //! All views share the images, which are drawn anew before each of them; views that differ in their band alone share
 //! what is drawn. What is 16 bytes wide is float32, so that the images add no error of their own.
 
-use super::{Emission, VIEW, emission::view_name, tracer::BACK};
+use super::{
+    Emission, VIEW,
+    emission::{sides, sized, view_name},
+    tracer::BACK,
+};
 use crate::{
     gpu::{Blend, BufferId, Draw, Format, ImageId, Lifetime, PassBuilder, Phase, Plan, Resource, Topology},
     passes::{
@@ -37,8 +41,6 @@ pub struct Bench<'a> {
     pub emissions: &'a [Emission],
     /// The buffer of their views.
     pub views: BufferId,
-    /// Samples along each side of a view.
-    pub side: u32,
     /// What the names of images and passes begin with.
     pub base: &'a str,
 }
@@ -63,11 +65,20 @@ struct Faces {
 
 /// What is drawn from the light, and the tracer that reads it.
 pub(super) struct Images {
-    side: u32,
     /// The file that takes the place of `far_side.glsl`.
     file: &'static str,
     /// Of each emission view: where its back and its receivers are seen from.
     views: BufferId,
+    /// One for each size of view.
+    sets: Vec<Set>,
+    /// Of each emission view, where the tracer is `wyman2005`.
+    inward: Vec<ImageId>,
+}
+
+/// The images of views of one size.
+#[derive(Clone, Copy)]
+struct Set {
+    side: u32,
     /// Scratch of the passes that keep no depth.
     depth: ImageId,
     front: Faces,
@@ -77,8 +88,29 @@ pub(super) struct Images {
     blockers: Option<ImageId>,
     receivers: ImageId,
     receivers_depth: ImageId,
-    /// Of each emission view, where the tracer is `wyman2005`.
-    inward: Vec<ImageId>,
+}
+
+impl Set {
+    fn plan(plan: &mut Plan, bench: &Bench<'_>, sides: &[u32], side: u32) -> Self {
+        let mut image = |name: &str, format| {
+            plan.image(&sized(&bench.name(name), sides, side), [side, side], format, Lifetime::Frame)
+        };
+        let mut faces = |name: &str| Faces {
+            position: image(&format!("{name}.position"), Format::Rgba32f),
+            normal: image(&format!("{name}.normal"), Format::Rgba32f),
+        };
+        let front = faces("front");
+        let back = (bench.class == PathClass::Transmit2).then(|| faces("back"));
+        Self {
+            side,
+            depth: image("depth", Format::Depth32f),
+            front,
+            back,
+            blockers: can_block(bench).then(|| image("blockers", Format::Depth32f)),
+            receivers: image("receivers", Format::Rgba32u),
+            receivers_depth: image("receivers.depth", Format::Depth32f),
+        }
+    }
 }
 
 /// Push constants of `glsl/light/raster_view.glsl`.
@@ -101,41 +133,36 @@ struct SamplePush {
 impl Images {
     /// Adds the images, and the passes before the first frame.
     pub fn plan(plan: &mut Plan, bench: &Bench<'_>, tracer: &str) -> Result<Self, PlanError> {
-        let side = bench.side;
-        let image = |plan: &mut Plan, name: &str, format| plan.image(name, [side, side], format, Lifetime::Frame);
-        let faces = |plan: &mut Plan, name: &str| Faces {
-            position: image(plan, &bench.name(&format!("{name}.position")), Format::Rgba32f),
-            normal: image(plan, &bench.name(&format!("{name}.normal")), Format::Rgba32f),
-        };
         let views = image_views(bench, tracer)?;
+        let sides = sides(bench.emissions);
         let mut images = Self {
-            side,
             file: match tracer {
                 "wyman2005" => "light/far_wyman2005.glsl",
                 "march" => "light/far_march.glsl",
                 _ => "light/far_fixed_point.glsl",
             },
             views: plan.upload(&bench.name("image_views"), &views.iter().map(View::data).collect::<Vec<_>>()),
-            depth: image(plan, &bench.name("depth"), Format::Depth32f),
-            front: faces(plan, "front"),
-            back: (bench.class == PathClass::Transmit2).then(|| faces(plan, "back")),
-            blockers: can_block(bench).then(|| image(plan, &bench.name("blockers"), Format::Depth32f)),
-            receivers: image(plan, &bench.name("receivers"), Format::Rgba32u),
-            receivers_depth: image(plan, &bench.name("receivers.depth"), Format::Depth32f),
+            sets: sides.iter().map(|side| Set::plan(plan, bench, &sides, *side)).collect(),
             inward: Vec::new(),
         };
-        if images.back.is_none() {
+        let [back, blockers] = [bench.class == PathClass::Transmit2, can_block(bench)];
+        if !back {
             plan.leave_out(&bench.name("back"), format!("light of class {} comes out of no body", bench.class));
         }
-        if images.blockers.is_none() {
+        if !blockers {
             plan.leave_out(&bench.name("blockers"), "all that is diffuse lies behind the specular objects");
         }
-        if tracer == "wyman2005" && images.back.is_some() {
+        if tracer == "wyman2005" && back {
             for index in 0..bench.emissions.len() {
                 images.add_inward(plan, bench, index);
             }
         }
         Ok(images)
+    }
+
+    /// Those of a view.
+    fn set(&self, emission: &Emission) -> &Set {
+        self.sets.iter().find(|set| set.side == emission.side).unwrap_or(&self.sets[0])
     }
 
     /// The way against the normal, once for views that differ in their band alone.
@@ -145,19 +172,19 @@ impl Images {
             return;
         }
         let name = bench.view_name("inward", index);
-        let image = plan.image(&name, [self.side; 2], Format::R32f, Lifetime::Persistent);
+        let Set { side, front, .. } = *self.set(&bench.emissions[index]);
+        let image = plan.image(&name, [side; 2], Format::R32f, Lifetime::Persistent);
         self.inward.push(image);
         self.draw_front(plan, bench, Phase::Prepare, index);
-        let push =
-            SamplePush { size: [self.side as i32; 2], light: bench.emissions[index].light as u32, view: index as u32 };
+        let push = SamplePush { size: [side as i32; 2], light: bench.emissions[index].lamp, view: index as u32 };
         bench
             .buffers
             .lights(bench.buffers.tracing(plan.pass(&name).phase(Phase::Prepare)))
             .read("light_views", bench.views)
-            .with(front_of(self.front))
+            .with(front_of(front))
             .store("light_inward", image)
             .push(&push)
-            .dispatch("light/inward.comp", [self.side.div_ceil(GROUP), self.side.div_ceil(GROUP), 1], GROUP * GROUP);
+            .dispatch("light/inward.comp", [side.div_ceil(GROUP), side.div_ceil(GROUP), 1], GROUP * GROUP);
     }
 
     /// Draws what the dispatch over a view reads.
@@ -166,27 +193,28 @@ impl Images {
             return;
         }
         self.draw_front(plan, bench, phase, index);
-        if let Some(back) = self.back {
+        let set = *self.set(&bench.emissions[index]);
+        if let Some(back) = set.back {
             let dielectric = |o: &Object| is_body(bench.scene, o);
             let pass = self.faces(plan, bench, "back", phase, index, (self.views, 2 * index)).define("BACK", 1);
             let pass = if bench.settings.choice(&BACK) == "farthest" { pass.define("FARTHEST", 1) } else { pass };
-            draw_faces(pass.depth(self.depth, true), Some(back), draws(bench.scene, bench.arrays, dielectric));
+            draw_faces(pass.depth(set.depth, true), Some(back), draws(bench.scene, bench.arrays, dielectric));
         }
-        if let Some(blockers) = self.blockers {
+        if let Some(blockers) = set.blockers {
             let pass = self.faces(plan, bench, "blockers", phase, index, (bench.views, index));
             let pass = pass.define("DEPTH_ALONE", 1).depth(blockers, true);
             draw_faces(pass, None, draws(bench.scene, bench.arrays, |o| !is_specular(bench.scene, o)));
         }
         let name = bench.view_name("receivers", index);
-        let push = RasterPush { size: [self.side as i32; 2], view: 2 * index as u32 + 1 };
+        let push = RasterPush { size: [set.side as i32; 2], view: 2 * index as u32 + 1 };
         bench
             .buffers
             .vertices(plan.pass(&name).phase(phase))
             .provide("raster_view.glsl", "light/raster_view.glsl")
             .read("raster_views", self.views)
             .push(&push)
-            .target(self.receivers, 0, Some([0.0; 4]), Blend::Replace)
-            .depth(self.receivers_depth, true)
+            .target(set.receivers, 0, Some([0.0; 4]), Blend::Replace)
+            .depth(set.receivers_depth, true)
             .draw(
                 &["eye/gbuffer.vert", "eye/gbuffer.frag"],
                 Topology::Triangles,
@@ -195,8 +223,9 @@ impl Images {
     }
 
     fn draw_front(&self, plan: &mut Plan, bench: &Bench<'_>, phase: Phase, index: usize) {
-        let pass = self.faces(plan, bench, "front", phase, index, (bench.views, index)).depth(self.depth, true);
-        draw_faces(pass, Some(self.front), draws(bench.scene, bench.arrays, |o| is_specular(bench.scene, o)));
+        let Set { depth, front, .. } = *self.set(&bench.emissions[index]);
+        let pass = self.faces(plan, bench, "front", phase, index, (bench.views, index)).depth(depth, true);
+        draw_faces(pass, Some(front), draws(bench.scene, bench.arrays, |o| is_specular(bench.scene, o)));
     }
 
     /// Begins a pass that draws faces from one of a list of views.
@@ -210,7 +239,7 @@ impl Images {
         (views, view): (BufferId, usize),
     ) -> PassBuilder<'p> {
         let name = bench.view_name(base, index);
-        let push = RasterPush { size: [self.side as i32; 2], view: view as u32 };
+        let push = RasterPush { size: [self.set(&bench.emissions[index]).side as i32; 2], view: view as u32 };
         bench
             .buffers
             .surfaces(plan.pass(&name).phase(phase))
@@ -220,19 +249,20 @@ impl Images {
     }
 
     /// Gives the tracer's dispatch over a view what it reads.
-    pub fn give<'p>(&self, pass: PassBuilder<'p>, index: usize) -> PassBuilder<'p> {
+    pub fn give<'p>(&self, pass: PassBuilder<'p>, emission: &Emission, index: usize) -> PassBuilder<'p> {
+        let set = self.set(emission);
         let pass = pass
             .provide("light/tracer.glsl", "light/image.glsl")
             .provide("far_side.glsl", self.file)
             .read("light_image_views", self.views)
-            .with(front_of(self.front))
-            .fetch("light_receivers", self.receivers)
-            .fetch("light_receivers_depth", self.receivers_depth);
-        let pass = match self.back {
+            .with(front_of(set.front))
+            .fetch("light_receivers", set.receivers)
+            .fetch("light_receivers_depth", set.receivers_depth);
+        let pass = match set.back {
             Some(back) => pass.fetch("light_back_position", back.position).fetch("light_back_normal", back.normal),
             None => pass,
         };
-        let pass = match self.blockers {
+        let pass = match set.blockers {
             Some(blockers) => pass.define("BLOCKERS", 1).fetch("light_blockers", blockers),
             None => pass,
         };
@@ -295,9 +325,9 @@ fn image_views(bench: &Bench<'_>, tracer: &str) -> Result<Vec<View>, PlanError> 
     let shared = bench.settings.choice(&VIEW) == "shared";
     let mut views = Vec::new();
     for emission in bench.emissions {
-        let (light, forward) = (&scene.lights[emission.light], emission.view.forward);
+        let forward = emission.view.forward;
         let parallel = |content| View::orthographic(forward, content, &everything);
-        let [back, receivers] = match light.kind.position() {
+        let [back, receivers] = match emission.position {
             None => [Some(View::orthographic(forward, &specular, &specular)), Some(parallel(&diffuse))],
             Some(p) => [View::perspective(p, &specular, &specular), View::perspective(p, &diffuse, &everything)],
         };
@@ -305,7 +335,7 @@ fn image_views(bench: &Bench<'_>, tracer: &str) -> Result<Vec<View>, PlanError> 
             Some(back) => back,
             None if bench.class == PathClass::Transmit2 => {
                 return Err(PlanError::Refused {
-                    what: format!("light.tracer={tracer} with the light '{}'", light.name),
+                    what: format!("light.tracer={tracer} with the light '{}'", scene.lights[emission.light].name),
                     reason:
                         "no one frustum from there holds the objects, and light bent inside them would go from one \
                              view to another"

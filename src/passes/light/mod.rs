@@ -19,7 +19,7 @@ use crate::{
 };
 
 pub use corners::Corners;
-pub use emission::{Emission, emissions, view_name};
+pub use emission::{Emission, emissions, sides, sized, view_name};
 pub use images::Bench;
 pub use photons::{Column, Photons, SamplePush, Tracing, photon_buffer, photons};
 pub use tracer::{BACK, TOTAL_REFLECTION, TRACER, Tracer};
@@ -40,6 +40,16 @@ pub static VIEW: Choice = Choice {
     default: "fitted",
     words: &["fitted", "shared"],
     doc: "fitted: to the specular objects; shared: one view of objects and receiver for photons and map, as in the papers",
+};
+
+/// Points of a light with a size that send photons.
+pub static AREA_SAMPLES: Whole = Whole {
+    key: "light.area_samples",
+    unit: "points",
+    default: 16,
+    range: 1..=256,
+    doc: "points (of a sun, directions) of each light with a size that send photons, each of a view of its own: all of them \
+          together about light.side x light.side",
 };
 
 /// The path class.
@@ -66,6 +76,7 @@ pub static LAYERS: Whole = Whole {
 pub static SETTINGS: &[Setting] = &[
     Setting::Whole(&SIDE),
     Setting::Choice(&VIEW),
+    Setting::Whole(&AREA_SAMPLES),
     Setting::Choice(&TRACER),
     Setting::Choice(&TOTAL_REFLECTION),
     Setting::Choice(&BACK),

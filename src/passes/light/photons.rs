@@ -1,6 +1,6 @@
 //! The photon buffer, and the dispatch that fills it from one view.
 
-use super::{Emission, LAYERS, SIDE, Tracer};
+use super::{Emission, LAYERS, Tracer, emission::sized};
 use crate::{
     gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
     passes::scene::SceneBuffers,
@@ -118,7 +118,8 @@ impl Photons {
     }
 }
 
-/// Adds the photon columns that `columns` names, once for all views; with layers where the class has several paths.
+/// Adds the photon columns that `columns` names, once for all views of each of the `sides`; with layers where the class has
+/// several paths.
 ///
 /// `half`: all of them in float16, and the most flux of a photon (W). Positions are then rounded as float16 rounds; flux
 /// is scaled by a power of two, or a photon's microwatts would be lost below what float16 holds.
@@ -128,14 +129,17 @@ pub fn photon_buffer(
     class: PathClass,
     columns: &[Column],
     half: Option<f64>,
-) -> Photons {
+    sides: &[u32],
+) -> Vec<Photons> {
     /// Below 65504 by enough that nothing overflows; 2⁻¹⁴ is the least that keeps all bits.
     const BRIGHTEST: f64 = 14.0;
     let half = half.map(|most| if most > 0.0 { (BRIGHTEST - most.log2().ceil()).exp2() } else { 1.0 });
-    let side = settings.whole(&SIDE);
     let layers = matches!(class, PathClass::All(_)).then(|| settings.whole(&LAYERS));
-    let photons = Photons { side, layers, half, columns: Vec::new() };
-    photons.with_columns(plan, "light/photons", columns)
+    let each = |&side: &u32| {
+        let photons = Photons { side, layers, half, columns: Vec::new() };
+        photons.with_columns(plan, &sized("light/photons", sides, side), columns)
+    };
+    sides.iter().map(each).collect()
 }
 
 /// Push constants of `glsl/light/sample.glsl`.
@@ -177,7 +181,7 @@ impl Tracing<'_> {
 
     /// Push constants of a dispatch over the view.
     pub fn push(&self) -> SamplePush {
-        SamplePush { size: [self.photons.side as i32; 2], light: self.emission.light as u32, view: self.index as u32 }
+        SamplePush { size: [self.photons.side as i32; 2], light: self.emission.lamp, view: self.index as u32 }
     }
 
     /// Gives a pass all that tracing from the view reads but push constants.
@@ -188,7 +192,8 @@ impl Tracing<'_> {
             PathClass::Transmit2 => (2, 0),
             PathClass::All(most) => (most, 0), // of a tree only their number matters
         };
-        let pass = self.photons.define(self.tracer.give(self.scene.lights(self.scene.tracing(pass)), self.index));
+        let lights = self.scene.lights(self.scene.tracing(pass));
+        let pass = self.photons.define(self.tracer.give(lights, self.emission, self.index));
         let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
         pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect)
     }

@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use super::images::{Bench, Images};
+use super::{
+    Emission,
+    images::{Bench, Images},
+};
 use crate::{
     gpu::{PassBuilder, Phase, Plan},
     passes::{PlanError, extents},
@@ -76,10 +79,10 @@ impl Tracer {
     }
 
     /// Gives a dispatch over view `index` the tracer and what it reads.
-    pub(super) fn give<'p>(&self, pass: PassBuilder<'p>, index: usize) -> PassBuilder<'p> {
+    pub(super) fn give<'p>(&self, pass: PassBuilder<'p>, emission: &Emission, index: usize) -> PassBuilder<'p> {
         let pass = if self.follows { pass.define("FOLLOWED", FOLLOWED) } else { pass };
         match &self.images {
-            Some(images) => images.give(pass, index),
+            Some(images) => images.give(pass, emission, index),
             None => pass,
         }
     }
@@ -108,7 +111,7 @@ fn check(bench: &Bench<'_>, name: &str) -> Result<(), PlanError> {
     }
     for emission in bench.emissions {
         let light = &scene.lights[emission.light];
-        if light.kind.position().is_some_and(|p| !scene.media_at(p).is_empty()) {
+        if emission.position.is_some_and(|p| !scene.media_at(p).is_empty()) {
             let reason = "it stands inside a body, and the body that its light would go through then has no front";
             return refused(&format!("the light '{}' in class {class}", light.name), reason.into());
         }

@@ -1,7 +1,6 @@
 //! The unit of sums in fixed point: fine enough for the faintest photon, coarse enough for all of the brightest.
 
 use super::Emission;
-use crate::scene::Scene;
 
 /// Bits by which the faintest view's photons are told apart, unless the brightest ones' ask for more room.
 const FINE: i32 = 31;
@@ -12,8 +11,8 @@ const EXPONENTS: std::ops::RangeInclusive<i32> = -126..=126;
 
 /// The flux that a unit of sums in fixed point (`glsl/shared/flux_sums.glsl`) stands for, W: a power of two, so that
 /// scaling by it rounds nothing.
-pub fn flux_unit(scene: &Scene, emissions: &[Emission], side: u32) -> f64 {
-    let fluxes = emissions.iter().map(|e| e.most(scene, side)).filter(|flux| *flux > 0.0);
+pub fn flux_unit(emissions: &[Emission]) -> f64 {
+    let fluxes = emissions.iter().map(Emission::most).filter(|flux| *flux > 0.0);
     let [least, most] = fluxes.fold([f64::INFINITY, 0.0], |[least, most], flux| [least.min(flux), most.max(flux)]);
     let exponent = |flux: f64, bits: i32| (flux.log2().ceil() as i32).saturating_sub(bits);
     let exponent = exponent(least, FINE).max(exponent(most, COARSE)); // of nothing: the least and the most integer

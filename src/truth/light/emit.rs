@@ -3,14 +3,17 @@
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-use super::walk::Start;
+use super::{
+    area::{Disc, Shining},
+    walk::Start,
+};
 use crate::{
     scene::{LightKind, Scene, Shape},
     truth::trace::{Media, Ray, Space},
 };
 
 /// Rectangles and cones are wider than what they hold by this share, so that rounding cuts nothing off.
-const MARGIN: f64 = 1e-9;
+pub const MARGIN: f64 = 1e-9;
 
 /// The photons that one light sends towards the specular objects.
 #[derive(Clone, Debug)]
@@ -43,51 +46,78 @@ pub enum Emission {
         /// Which share of its intensity goes where.
         light: Box<LightKind>,
     },
+    /// A disc of directions.
+    Disc(Disc),
+    /// A surface that shines.
+    Shining(Shining),
 }
 
 impl Emission {
     /// Of each light in turn; none where nothing is specular.
     pub fn of(space: &Space) -> Vec<Self> {
+        Self::of_each(space, &space.scene.lights.iter().map(|light| light.kind.clone()).collect::<Vec<_>>())
+    }
+
+    /// Of each of these lights in turn; none where nothing is specular.
+    pub fn of_each(space: &Space, lights: &[LightKind]) -> Vec<Self> {
         let held = Held::of(space.scene);
         if held.is_empty() {
             return vec![];
         }
-        let light = |kind: &LightKind| match kind {
-            LightKind::Directional { direction, irradiance } => rectangle(*direction, *irradiance, &held, space),
-            LightKind::Point { position, intensity } => {
-                held.cone(*position).emission(*position, *intensity, kind, space.media(*position))
-            }
-            LightKind::Spot { position, intensity, beam, .. } => {
-                // Whichever holds less: what lies outside the other is dark, or meets nothing.
-                let (held, lit) = (held.cone(*position), Cone { axis: beam.axis, height: beam.outer.min(2.0) });
-                let cone = if held.height < lit.height { held } else { lit };
-                cone.emission(*position, *intensity, kind, space.media(*position))
-            }
+        let light = |kind: &LightKind| {
+            Some(match kind {
+                LightKind::Directional { direction, irradiance } => rectangle(*direction, *irradiance, &held, space),
+                LightKind::Sun { direction, irradiance, radius } => {
+                    Self::Disc(Disc::new(*direction, *radius, *irradiance, held.room(), space))
+                }
+                LightKind::Lamp { .. } => Self::Shining(Shining::new(kind, held.room())?),
+                LightKind::Point { position, intensity } | LightKind::Patch { position, intensity, .. } => {
+                    held.cone(*position).emission(*position, *intensity, kind, space.media(*position))
+                }
+                LightKind::Spot { position, intensity, beam, .. } => {
+                    // Whichever holds less: what lies outside the other is dark, or meets nothing.
+                    let (held, lit) = (held.cone(*position), Cone { axis: beam.axis, height: beam.outer.min(2.0) });
+                    let cone = if held.height < lit.height { held } else { lit };
+                    cone.emission(*position, *intensity, kind, space.media(*position))
+                }
+            })
         };
-        space.scene.lights.iter().map(|l| light(&l.kind)).collect()
+        lights.iter().filter_map(light).collect()
     }
 
-    /// Flux of all its photons, W per band; of a spot light, if the whole cone had the intensity of its axis.
+    /// Flux of all its photons, W per band; of a spot light, if the whole cone had the intensity of its axis; of a light
+    /// with a size, of the order of it.
     pub fn flux(&self) -> DVec3 {
         match self {
             Self::Rectangle { flux, .. } | Self::Cone { flux, .. } => *flux,
+            Self::Disc(disc) => disc.flux(),
+            Self::Shining(shining) => shining.flux(),
         }
     }
 
-    /// The photons of a point of the unit square, one for all bands, or one for each where they are bent apart.
-    pub fn starts(&self, at: DVec2, flux: DVec3, apart: bool) -> impl Iterator<Item = Start> {
-        let whole = self.start(at, flux);
+    /// Whether its light comes from more than a point or a direction.
+    pub fn has_area(&self) -> bool {
+        matches!(self, Self::Disc(_) | Self::Shining(_))
+    }
+
+    /// The photons of a point of the unit square, one for all bands, or one for each where they are bent apart; of a light
+    /// with a size, from its point `on`, of another unit square.
+    pub fn starts(&self, space: &Space, [at, on]: [DVec2; 2], flux: DVec3) -> impl Iterator<Item = Start> {
+        let (whole, apart) = (self.start(space, [at, on], flux), space.scene.is_dispersive());
         let bands = if apart { 3 } else { 1 };
         let one = move |band: usize| {
+            let whole = whole?;
             let flux = DVec3::AXES[band] * whole.flux;
-            if apart { Start { flux, band, ..whole } } else { whole }
+            Some(if apart { Start { flux, band, ..whole } } else { whole })
         };
-        (0..bands).map(one)
+        (0..bands).filter_map(one)
     }
 
     /// The photon of a point of the unit square; equal areas of it carry equal flux.
-    fn start(&self, at: DVec2, flux: DVec3) -> Start {
-        match self {
+    fn start(&self, space: &Space, [at, on]: [DVec2; 2], flux: DVec3) -> Option<Start> {
+        Some(match self {
+            Self::Disc(disc) => return disc.start(at, on, flux),
+            Self::Shining(shining) => return shining.start(space, at, on, flux),
             Self::Rectangle { corner, u, v, d, .. } => {
                 let ray = Ray { o: corner + at.x * u + at.y * v, d: *d, left: None };
                 Start { ray, flux, media: None, band: 0 }
@@ -101,7 +131,7 @@ impl Emission {
                 let flux = flux * light.share(d);
                 Start { ray: Ray { o: *apex, d, left: None }, flux, media: Some(*media), band: 0 }
             }
-        }
+        })
     }
 }
 
@@ -140,10 +170,18 @@ impl Held {
         let along = DVec3::AXES.map(|axis| self.along(axis));
         DVec3::from_array(along.map(|[low, high]| 0.5 * (low + high)))
     }
+
+    /// Corners of a box that holds it.
+    fn room(&self) -> [DVec3; 2] {
+        let along = DVec3::AXES.map(|axis| self.along(axis));
+        let corner = |k: usize| DVec3::from_array(along.map(|side| side[k]));
+        let room = MARGIN * (corner(1) - corner(0));
+        [corner(0) - room, corner(1) + room]
+    }
 }
 
 /// Two unit vectors across a unit vector.
-fn across(d: DVec3) -> [DVec3; 2] {
+pub fn across(d: DVec3) -> [DVec3; 2] {
     let x = d.any_orthonormal_vector();
     [x, d.cross(x)]
 }

@@ -3,6 +3,7 @@
 //! Photons come in chunks of one size. Each chunk is an unbiased estimate of its own: a low-discrepancy sequence with
 //! a random shift that is a function of seed, light and chunk. The spread of the chunks gives the noise.
 
+pub mod area;
 mod chain;
 mod emit;
 pub mod sequence;
@@ -20,7 +21,7 @@ pub use walk::{Balance, Landing};
 use super::trace::Space;
 use crate::scene::PathClass;
 pub use emit::Emission;
-use sequence::{R2, stream};
+use sequence::{R2, R4, stream};
 
 /// What a seed's numbers are for: photons.
 const PHOTONS: u64 = 1;
@@ -61,12 +62,14 @@ impl<'a> Photons<'a> {
     pub fn chunk(&self, k: u64, mut land: impl FnMut(&Landing)) -> Balance {
         let mut sum = Balance::default();
         for (light, (emission, count)) in self.lights.iter().enumerate() {
-            let points = R2::new(stream(&[self.seed, PHOTONS, light as u64, k]));
+            let seed = stream(&[self.seed, PHOTONS, light as u64, k]);
+            let (plane, both) = (R2::new(seed), R4::new(seed));
+            let point = |i| if emission.has_area() { both.point(i) } else { [plane.point(i), DVec2::ZERO] };
             let choices = stream(&[self.seed, CHOICES, light as u64, k]);
             let flux = emission.flux() / (*count).max(1) as f64;
             for i in 0..*count {
                 let faint = Faint::Choose(stream(&[choices, i]));
-                for start in emission.starts(points.point(i), flux, self.space.scene.is_dispersive()) {
+                for start in emission.starts(self.space, point(i), flux) {
                     sum = sum.plus(&walk::walk(self.space, self.class, &start, faint, &mut land));
                 }
             }
@@ -76,9 +79,9 @@ impl<'a> Photons<'a> {
 }
 
 /// Every landing of the ray through a point of an emission's unit square, its flux a share of what was emitted. Nothing is
-/// left to chance, so that neighbouring points have neighbouring landings.
+/// left to chance, so that neighbouring points have neighbouring landings; of a light with a size, the light of its middle.
 pub fn follow(space: &Space, class: PathClass, emission: &Emission, at: DVec2, mut land: impl FnMut(&Landing)) {
-    for start in emission.starts(at, DVec3::ONE, space.scene.is_dispersive()) {
+    for start in emission.starts(space, [at, DVec2::splat(0.5)], DVec3::ONE) {
         walk::walk(space, class, &start, Faint::Drop, &mut land);
     }
 }

@@ -50,6 +50,30 @@ impl R2 {
     }
 }
 
+/// As [`R2`], in four dimensions: multiples of 1/g to 1/g⁴, g⁵ = g + 1.
+#[derive(Clone, Copy, Debug)]
+pub struct R4 {
+    shift: [u64; 4],
+}
+
+/// 2^64/g to 2^64/g⁴, g = 1.16730397826141868425…
+const STEPS_OF_FOUR: [u64; 4] =
+    [0xdb4f_0b91_75ae_2165, 0xbbe0_5633_03a4_615f, 0xa0f2_ec75_a1fe_1576, 0x89e1_8285_7d9e_d689];
+
+impl R4 {
+    /// The sequence with the shift of a stream.
+    pub fn new(stream: u64) -> Self {
+        let shift = |k: u64| mix(stream ^ mix(k));
+        Self { shift: [shift(0), shift(1), shift(2), shift(3)] }
+    }
+
+    /// The i-th point, as two of unit squares.
+    pub fn point(&self, i: u64) -> [DVec2; 2] {
+        let at = |k: usize| unit(self.shift[k].wrapping_add(STEPS_OF_FOUR[k].wrapping_mul(i)));
+        [DVec2::new(at(0), at(1)), DVec2::new(at(2), at(3))]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,6 +83,15 @@ mod tests {
         let g = 1.324_717_957_244_746_f64;
         for (step, exact) in STEPS.iter().zip([1.0 / g, 1.0 / (g * g)]) {
             assert!((unit(*step) - exact).abs() < 1e-15, "{}", unit(*step));
+        }
+    }
+
+    #[test]
+    fn the_steps_of_four_are_those_of_their_number() {
+        let g = 1.167_303_978_261_418_7_f64;
+        assert!((g.powi(5) - g - 1.0).abs() < 1e-15);
+        for (k, step) in STEPS_OF_FOUR.iter().enumerate() {
+            assert!((unit(*step) - g.powi(-(k as i32 + 1))).abs() < 1e-15, "{k}: {}", unit(*step));
         }
     }
 

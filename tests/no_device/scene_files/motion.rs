@@ -1,4 +1,7 @@
 //! Motion with one fault each: named by its key, what was found, and what to do.
+use glam::DVec3;
+use nephroid::scene::LightKind;
+
 use super::{BASE, Folder};
 
 /// Tables added to the base scene, then the key of the fault, and words of found and remedy.
@@ -63,6 +66,9 @@ const CASES: &[Case] = &[
         "lights.sun.motion.intensity", "`intensity`", "a directional light has `direction` and `irradiance`"),
     ("[lights.lamp.motion]\ndirection = [{ time = 0, value = [0, -1, 0] }]",
         "lights.lamp.motion.direction", "`direction`", "a point light has `position` and `intensity`"),
+    ("[lights.panel.disk]\ncenter = [0, 3, 0]\nnormal = [0, -1, 0]\nradius = 1\npower = 1\n[lights.panel.motion]\n\
+      intensity = [{ time = 0, value = 1 }]",
+        "lights.panel.motion.intensity", "`intensity`", "a surface that shines has `position` and `radiance`"),
     ("[lights.lamp.motion]\nintensity = [{ time = 0, value = -1 }]", "lights.lamp.motion.intensity.0.value", "-1", ""),
     ("[lights.sun.motion]\ndirection = [{ time = 0, value = [0, 0, 0] }]", "lights.sun.motion.direction.0.value", "", ""),
     ("[lights.sun.motion]\ndirection = [{ time = 0, value = [0, -1, 0] }, { time = 1, value = [0, 1, 0] }]",
@@ -108,4 +114,19 @@ fn a_speed_that_is_none_is_named() {
         assert!(error.key == key && error.found.contains(found), "{error}");
         assert!(error.remedy.contains("0 stands still"), "{error}");
     }
+}
+
+/// A surface that shines moves by its centre, a sun with a disc as one without.
+#[test]
+fn lights_with_a_size_move() {
+    let moves = "angular_diameter = 2\n[lights.sun.motion]\nirradiance = [{ time = 0, value = 1 }, { time = 2, value = 3 }]\n\
+                 [lights.panel.disk]\ncenter = [0, 3, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = 1\n\
+                 [lights.panel.motion]\nposition = [{ time = 0, value = [0, 3, 0] }, { time = 2, value = [4, 3, 0] }]\n\
+                 radiance = [{ time = 0, value = 1 }, { time = 2, value = [3, 1, 5] }]\n";
+    let text = BASE.replacen("irradiance = 1\n", &format!("irradiance = 1\n{moves}"), 1);
+    let scene = Folder::new().load(text, &[]).expect("a scene that moves").at(1.0);
+    let of = |name: &str| &scene.lights.iter().find(|light| light.name == name).expect(name).kind;
+    assert_eq!(of("panel").position(), Some(DVec3::new(2.0, 3.0, 0.0)));
+    assert_eq!((of("panel").power(), of("sun").power()), ([2.0, 1.0, 3.0], [2.0; 3]));
+    assert!(matches!(of("sun"), LightKind::Sun { radius, .. } if (radius.to_degrees() - 1.0).abs() < 1e-12));
 }

@@ -155,3 +155,44 @@ fn two_lights_are_the_sum_of_each_alone() {
         }
     }
 }
+
+/// `glass-sphere` under this in the place of the sun, as TOML.
+fn under(light: &str) -> nephroid::scene::Scene {
+    scene("glass-sphere", &[("lights.sun", light)])
+}
+
+/// Of the power that points of a surface send into half of all directions: texels that straddle its plane.
+const HALF_SPACE: f64 = 0.005;
+
+#[test]
+fn a_surface_inside_the_glass_shines_out_of_it() {
+    let mut scene = under("{ disk = { center = [0, 0, 0], normal = [0, -1, 0], radius = 0.1, power = 3 } }");
+    scene.paths = "transmit-1".parse().unwrap();
+    let picture = region(&gpu(), scene);
+    balanced(&picture);
+    close("emitted", picture.energy.emitted_w, 3.0, HALF_SPACE);
+    assert_eq!(picture.account.counts[2], 0, "no total reflection so near to the middle: {:?}", picture.account.counts);
+    dark(&picture, "irradiance.direct");
+}
+
+#[test]
+fn a_surface_behind_the_receiver_lights_nothing() {
+    let below = under("{ quad = { center = [0, -3, 0], u = [1, 0, 0], v = [0, 0, -1], radiance = 5 } }");
+    let picture = region(&gpu(), below);
+    balanced(&picture);
+    let counts = picture.account.counts;
+    assert!(counts[0] > 0 && counts[4] == counts[0], "all blocked: {counts:?}");
+    dark(&picture, "irradiance.direct");
+}
+
+/// Of 16 directions' cosines the mean is that of half the sky, one half.
+const FEW_DIRECTIONS: f64 = 0.02;
+
+#[test]
+fn half_the_sky_as_one_sun_is_finite() {
+    let picture =
+        region(&gpu(), under("{ directional = { direction = [0, -1, 0], irradiance = 1, angular_diameter = 180 } }"));
+    balanced(&picture);
+    // Each direction sees the ball as large; together they light a plane that faces each twice as much as one overhead.
+    close("emitted", picture.energy.emitted_w, 2.0 * PI, FEW_DIRECTIONS);
+}

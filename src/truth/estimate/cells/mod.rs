@@ -3,7 +3,8 @@
 //!
 //! Stages double the grid, each a whole estimate of its own. Nothing is random, so there is no noise to estimate; what
 //! stands for the variance is the squared change from the stage before, which is larger than what is left as long as the
-//! error falls at all. Biased where cells cannot be resolved ([`refine`]), and by branches that carry less than 10⁻⁵ of
+//! error falls at all. A light with a size is many without, whose number doubles from stage to stage as their grids do by
+//! area: the sum over them has no noise either. Biased where cells cannot be resolved ([`refine`]), and by branches that carry less than 10⁻⁵ of
 //! their photon (class `all:N`), which are dropped.
 
 mod refine;
@@ -13,7 +14,7 @@ use glam::DVec2;
 
 use super::{BANDS, Estimate, Judged};
 use crate::{
-    scene::PathClass,
+    scene::{LightKind, PathClass},
     truth::{Goal, Standing, eye::Eye, light::Emission, trace::Space},
 };
 use refine::{Cell, Refiner, Spent};
@@ -24,6 +25,8 @@ const BANDS_A_STAGE: u64 = 64;
 const FIRST: u64 = 16;
 /// Cells a side of the first stage where no goal says.
 const START: u64 = 64;
+/// Lights without size that stand for one that has a size, in the first stage.
+const SAMPLES: u32 = 16;
 /// Cells a side of the last stage at most: beyond it a cell's landing is lost in the rounding of its rays.
 const LAST: u64 = 1 << 20;
 
@@ -32,7 +35,10 @@ pub struct Cells<'a> {
     space: &'a Space<'a>,
     eye: Eye,
     class: PathClass,
+    /// Without size.
     lights: Vec<Emission>,
+    /// With a size.
+    areas: Vec<LightKind>,
     judged: Judged,
     /// Cells a side of the first stage.
     start: u64,
@@ -46,11 +52,17 @@ pub struct Cells<'a> {
 impl<'a> Cells<'a> {
     /// Of one path class, as this eye sees it. The first stage is such that doubling leads to the goal's photons.
     pub fn new(space: &'a Space<'a>, eye: Eye, class: PathClass, goal: &Goal, judged: Judged) -> Self {
-        let lights: Vec<_> = Emission::of(space).into_iter().filter(|e| e.flux().max_element() > 0.0).collect();
+        let shines = |kind: &&LightKind| kind.power().iter().any(|band| *band > 0.0);
+        let kinds = space.scene.lights.iter().map(|light| &light.kind).filter(shines).cloned();
+        let (areas, sizeless): (Vec<_>, Vec<_>) = kinds.partition(LightKind::has_area);
+        let lights = lit(Emission::of_each(space, &sizeless));
+        // Where nothing is specular they send no photon.
+        let areas = if space.scene.has_specular() { areas } else { vec![] };
         let start = match goal.photons {
             None => START,
             Some(cells) => {
-                let mut side = ((cells as f64 / lights.len().max(1) as f64).sqrt().ceil() as u64).clamp(FIRST, LAST);
+                let mut side = ((cells as f64 / (lights.len() + areas.len()).max(1) as f64).sqrt().ceil() as u64)
+                    .clamp(FIRST, LAST);
                 while side >= 2 * FIRST {
                     side = side.div_ceil(2);
                 }
@@ -58,11 +70,23 @@ impl<'a> Cells<'a> {
             }
         };
         let sum = vec![0.0; eye.pixels() * BANDS + Spent::NUMBERS];
-        Self { space, eye, class, lights, judged, start, sum, stages: [vec![], vec![]], chunks: 0 }
+        Self { space, eye, class, lights, areas, judged, start, sum, stages: [vec![], vec![]], chunks: 0 }
     }
 
     fn side(&self, stage: u64) -> u64 {
         self.start << stage.min(32)
+    }
+
+    /// Lights that send photons.
+    fn sources(&self) -> usize {
+        self.lights.len() + self.areas.len()
+    }
+
+    /// Lights without size for one of those that have a size, and the cells a side of each: together as many cells as of a
+    /// light without size, or few more.
+    fn samples(&self, stage: u64) -> (u32, u64) {
+        let count = SAMPLES << stage.min(16);
+        (count, (self.side(stage) as f64 / f64::from(count).sqrt()).ceil() as u64)
     }
 
     /// Cells of all stages up to a chunk.
@@ -70,11 +94,11 @@ impl<'a> Cells<'a> {
         let (stage, band) = (chunks / BANDS_A_STAGE, chunks % BANDS_A_STAGE);
         let whole: u64 = (0..stage).map(|s| self.side(s).pow(2)).sum();
         let rows = self.side(stage) * band / BANDS_A_STAGE;
-        (whole + rows * self.side(stage)) * self.lights.len() as u64
+        (whole + rows * self.side(stage)) * self.sources() as u64
     }
 
     /// One band of rows of one light's grid.
-    fn band(&self, light: &Emission, side: u64, rows: std::ops::Range<u64>, picture: &mut [f64]) -> Spent {
+    fn band(&self, light: (&Emission, f64), side: u64, rows: std::ops::Range<u64>, picture: &mut [f64]) -> Spent {
         let mut refiner = Refiner::new(self.space, &self.eye, self.class, light, picture);
         let size = 1.0 / side as f64;
         let at = |x: u64, y: u64| DVec2::new(x as f64, y as f64) * size;
@@ -101,6 +125,11 @@ impl<'a> Cells<'a> {
     }
 }
 
+/// Those that send anything.
+fn lit(emissions: Vec<Emission>) -> Vec<Emission> {
+    emissions.into_iter().filter(|e| e.flux().max_element() > 0.0).collect()
+}
+
 impl Estimate for Cells<'_> {
     fn chunks(&self) -> u64 {
         self.chunks
@@ -108,9 +137,14 @@ impl Estimate for Cells<'_> {
 
     fn chunk(&self, k: u64) -> Vec<f64> {
         let (side, band) = (self.side(k / BANDS_A_STAGE), k % BANDS_A_STAGE);
-        let row = |band: u64| side * band / BANDS_A_STAGE;
+        let rows = |side: u64| side * band / BANDS_A_STAGE..side * (band + 1) / BANDS_A_STAGE;
         let mut picture = vec![0.0; self.eye.pixels() * BANDS];
-        let spent = self.lights.iter().map(|l| self.band(l, side, row(band)..row(band + 1), &mut picture));
+        let (count, of_each) = self.samples(k / BANDS_A_STAGE);
+        let part = 1.0 / f64::from(count);
+        let samples: Vec<LightKind> = self.areas.iter().flat_map(|area| area.samples(count)).collect();
+        let samples = if rows(of_each).is_empty() { vec![] } else { lit(Emission::of_each(self.space, &samples)) };
+        let all = self.lights.iter().map(|l| ((l, 1.0), side)).chain(samples.iter().map(|l| ((l, part), of_each)));
+        let spent = all.map(|(l, side)| self.band(l, side, rows(side), &mut picture));
         let spent = spent.fold(Spent::default(), |sum, one| sum.plus(&one));
         picture.extend(spent.to_numbers());
         picture
@@ -128,18 +162,18 @@ impl Estimate for Cells<'_> {
     }
 
     fn may_be_finished(&self, _: &Goal) -> bool {
-        self.lights.is_empty() || self.chunks.is_multiple_of(BANDS_A_STAGE)
+        self.sources() == 0 || self.chunks.is_multiple_of(BANDS_A_STAGE)
     }
 
     fn standing(&self, goal: &Goal) -> Standing {
-        if self.lights.is_empty() {
+        if self.sources() == 0 {
             return Standing { photons: 0, noise: 0.0, missing: 0.0, finished: true };
         }
         let (stage, between) = (self.chunks / BANDS_A_STAGE, self.chunks % BANDS_A_STAGE);
         let noise = self.judged.noise(self.mean().into_iter(), self.variance().into_iter());
         let enough = |stage: u64| {
             let side = self.side(stage - 1);
-            let cells = side.saturating_mul(side).saturating_mul(self.lights.len() as u64);
+            let cells = side.saturating_mul(side).saturating_mul(self.sources() as u64);
             goal.photons.is_some_and(|n| cells >= n)
         };
         let quiet = stage > 1 && goal.noise.is_some_and(|most| noise <= most);

@@ -89,6 +89,8 @@ pub struct Refiner<'a> {
     eye: &'a Eye,
     class: PathClass,
     light: &'a Emission,
+    /// Share of a light that has a size that it stands for.
+    part: f64,
     picture: &'a mut [f64],
     spent: Spent,
 }
@@ -97,15 +99,15 @@ pub struct Refiner<'a> {
 pub type Corners<'c> = [&'c [Landed]; 4];
 
 impl<'a> Refiner<'a> {
-    /// For one light; `picture` gets irradiance.
+    /// For one light, and which part it is of one that has a size; `picture` gets irradiance.
     pub fn new(
         space: &'a Space<'a>,
         eye: &'a Eye,
         class: PathClass,
-        light: &'a Emission,
+        (light, part): (&'a Emission, f64),
         picture: &'a mut [f64],
     ) -> Self {
-        Self { space, eye, class, light, picture, spent: Spent::default() }
+        Self { space, eye, class, light, part, picture, spent: Spent::default() }
     }
 
     /// Where the flux went.
@@ -140,7 +142,7 @@ impl<'a> Refiner<'a> {
             let five = [corners[0], corners[1], corners[2], corners[3], &centre].map(|landed| find(landed, path));
             if let Some(sheet) = whole(five) {
                 self.spread(cell, &sheet);
-            } else if cell.level < deepest(five) {
+            } else if cell.level < deepest(five, self.part) {
                 broken = true;
                 continue;
             } else if let Some(landed) = five[4] {
@@ -208,9 +210,10 @@ fn find(landed: &[Landed], path: u64) -> Option<&Landed> {
     landed.binary_search_by_key(&path, |l| l.path).ok().map(|at| &landed[at])
 }
 
-/// The level to which a path is followed: a branch of a quarter of the flux one level less, since it matters as much.
-fn deepest(five: [Option<&Landed>; 5]) -> u32 {
-    let most = five.into_iter().flatten().map(|l| l.share.max_element()).fold(0.0, f64::max);
+/// The level to which a path is followed: a branch of a quarter of the flux one level less, since it matters as much; of a
+/// light of sixteen parts one level less too, since what is left of their errors is not alike.
+fn deepest(five: [Option<&Landed>; 5], part: f64) -> u32 {
+    let most = part.sqrt() * five.into_iter().flatten().map(|l| l.share.max_element()).fold(0.0, f64::max);
     let less = if most > 0.0 { -most.log2() / 2.0 } else { f64::INFINITY };
     DEEPEST.saturating_sub(less.max(0.0) as u32)
 }
