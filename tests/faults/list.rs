@@ -84,8 +84,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "shadow left out",
         file: "eye/direct.glsl",
-        old: "if (occluded(o, towards, reach, MASK_ALL)) continue;",
-        new: "if (occluded(o, towards, reach, MASK_DIFFUSE)) continue;",
+        old: "occluded(o, towards, reach, MASK_ALL) ?",
+        new: "occluded(o, towards, reach, MASK_DIFFUSE) ?",
         check: &NULL,
     },
     Fault {
@@ -98,8 +98,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "cosine of the receiver dropped",
         file: "eye/direct.glsl",
-        old: "sum += facing * cosine;",
-        new: "sum += facing;",
+        old: "vec3(0.0) : facing * cosine;",
+        new: "vec3(0.0) : facing;",
         check: &DIRECT,
     },
     Fault {
