@@ -14,11 +14,17 @@ const SOURCE: [&str; 2] = ["paper", "platform"];
 /// The id of what a paper says outside its tables.
 const TEXT: &str = "text";
 
-/// Figures of pictures, which have no number in `tables.toml`: paper, figure, what its pictures are of.
-const PICTURES: [(&str, &str, &[&str]); 1] =
-    [("maps", "figure7", &["constant", "thin lens", "interpolated", "varying"])];
-/// What is reported of a picture.
-pub const PICTURE: &str = "gather";
+/// Figures of pictures, which have no number in `tables.toml`: paper, figure, what is reported, what its pictures are of.
+const PICTURES: [(&str, &str, &str, &[&str]); 8] = [
+    ("maps", "figure7", "gather", &["constant", "thin lens", "interpolated", "varying"]),
+    ("waves", "figure9", "picture", &["per vertex", "per pixel", "texture"]),
+    ("lines", "figure7", "picture", &["lines", "Krüger et al."]),
+    ("lines", "figure8", "picture", &["g = 0.7", "g = 0", "g = -0.7"]),
+    ("lines", "figure10", "picture", &["buffer", "filter"]),
+    ("lines", "figure11", "picture", &["integration steps"]),
+    ("beams", "figure4", "picture", &["static grids", "refinement steps"]),
+    ("beams", "figure8", "picture", &["direct", "medium", "volume", "surface", "composed"]),
+];
 
 /// What a row is of: an N, or a scene or variant by name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -102,8 +108,9 @@ fn of_paper(name: &str, paper: &Table) -> Vec<Published> {
     let tables = paper.iter().filter_map(|(key, value)| Some((key, value.as_table()?)));
     let mut all: Vec<_> = tables.map(|(key, table)| published(key, figures(table, axis(paper, table)))).collect();
     let pictures = PICTURES.iter().filter(|(of, ..)| *of == name);
-    all.extend(pictures.map(|(_, figure, rows)| {
-        let row = |row: &&str| Figure { row: Label::Words((*row).to_owned()), column: PICTURE.to_owned(), value: None };
+    all.extend(pictures.map(|(_, figure, column, rows)| {
+        let row =
+            |row: &&str| Figure { row: Label::Words((*row).to_owned()), column: (*column).to_owned(), value: None };
         published(figure, rows.iter().map(row).collect())
     }));
     let outside = paper.iter().filter(|(key, value)| !is_source(key) && !value.is_table());
