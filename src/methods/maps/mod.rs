@@ -91,7 +91,14 @@ static CHAIN: &[Link] = &[
     Link {
         shown: Shown::Landings,
         step: "tracer",
-        moved_by: &["light.tracer", "light.view", "light.back", "light.total_reflection", "light.layers"],
+        moved_by: &[
+            "light.tracer",
+            "light.view",
+            "light.back",
+            "light.total_reflection",
+            "light.layers",
+            "light.area_samples",
+        ],
     },
     Link {
         shown: Shown::Fine,
