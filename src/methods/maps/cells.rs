@@ -1,8 +1,9 @@
 //! Splat `cells`: the flux of each texel of a light's view is spread over where the light between its corners lands.
 //!
 //! Ours. The corners are traced beside the centres, and the four triangles between them are shared out among the map's
-//! texels exactly: where neighbouring rays stay neighbours, no light is blurred and no gap is left. A cell that its five rays
-//! do not describe (cut by a silhouette or a crease, bent, or very large) is traced again as 4 × 4 smaller ones. That takes rays from anywhere, as `bvh` traces them; the image-space tracers know the centres of texels
+//! texels exactly: where neighbouring rays stay neighbours, no light is blurred and no gap is left. A cell that its
+//! five rays do not describe (cut by a silhouette or a crease, bent, or very large) is traced again as 4 × 4 smaller
+//! ones. That takes rays from anywhere, as `bvh` traces them; the image-space tracers know the centres of texels
 //! alone, and leave such cells as points.
 
 use super::{Axes, Job, SPLAT_SIZE, sums::Fixed};

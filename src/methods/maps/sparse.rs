@@ -17,8 +17,9 @@ fn apart(emission: &Emission, receiver: &Region, side: f64) -> f64 {
     (view.high - view.low).abs().max_element() * metres / side
 }
 
-/// A warning where no fixed splat reaches the middle between four photons of an evenly lit receiver: there it has gaps. Splats that follow their neighbours' distance leave none. Nothing is said where so many
-/// photons arrive that they would touch all over the map: then light is gathered.
+/// A warning where no fixed splat reaches the middle between four photons of an evenly lit receiver: there it has gaps.
+/// Splats that follow their neighbours' distance leave none. Nothing is said where so many photons arrive that they would
+/// touch all over the map: then light is gathered.
 pub fn warning(shown: &Outcome<'_>) -> Option<String> {
     let Outcome { scene, receiver, settings, account } = *shown;
     if Axes::of(settings).splat != "fixed" {
