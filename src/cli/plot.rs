@@ -33,6 +33,9 @@ pub struct PlotArgs {
     /// The measure of the error
     #[arg(long, value_name = "MEASURE", default_value = "relmse")]
     measure: String,
+    /// What a scale plot runs along: photons, lights, triangles, or a setting such as maps.side
+    #[arg(long, value_name = "KEY", default_value = "photons")]
+    along: String,
     /// Compare the errors at these times, ms [default: some that most series were measured at]
     #[arg(long, value_name = "MS,...", value_delimiter = ',', value_parser = parse_positive)]
     at_ms: Vec<f64>,
@@ -48,7 +51,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let folder = OutFolder::stage(folder)?;
     let results = Results::read(&args.results)?;
     warn(&results.notes);
-    let chart = chart(&results, args.kind, &args.measure)?;
+    let chart = chart(&results, args.kind, &args.measure, &args.along)?;
     if chart.kind != Kind::ErrorTime && !(args.at_ms.is_empty() && args.at_error.is_empty()) {
         let kind = chart.kind;
         return Err(Failure::usage(anyhow!("--at-ms and --at-error compare errors and times: this plot is of {kind}")));

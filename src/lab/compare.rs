@@ -179,7 +179,7 @@ fn intervals(reference: &Picture, measures: [Measure; 8]) -> [Measure; 8] {
 }
 
 /// The pixels judged, in float64.
-fn kept(layer: &Layer, judged: &[bool]) -> Vec<f64> {
+pub(super) fn kept(layer: &Layer, judged: &[bool]) -> Vec<f64> {
     let pixels = layer.pixels().zip(judged).filter(|(_, judged)| **judged);
     pixels.flat_map(|(pixel, _)| pixel).map(|&value| f64::from(value)).collect()
 }

@@ -8,6 +8,7 @@ use crate::{
     image::{ImageError, Layers},
     passes::account::Account,
     renderer::{Energy, Frame, RenderError, Renderer},
+    scene::SceneError,
     whole::FileError,
 };
 
@@ -17,6 +18,9 @@ pub enum LabError {
     /// Planning, preparing or rendering.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// A scene that cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// Pictures that cannot be judged.
     #[error(transparent)]
     Compare(#[from] CompareError),

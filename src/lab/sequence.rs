@@ -53,6 +53,11 @@ impl FromStr for Sequence {
 }
 
 impl Sequence {
+    /// All its times, s.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        (0..self.frames()).map(|k| self.time(k))
+    }
+
     fn exact(&self) -> f64 {
         (self.to_s - self.from_s) * self.frames_a_second
     }

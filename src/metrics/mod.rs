@@ -9,6 +9,7 @@
 //! | [`mae`] | \|x − r\| | |
 //! | [`mape`] | \|x − r\| / (\|r\| + ε) | ε = 10⁻² mean(\|r\|) |
 //! | [`energy_ratio`] | Σx / Σr | |
+//! | [`flicker()`] | (xₖ₊₁ − xₖ)² − (rₖ₊₁ − rₖ)², over mean(r)², of a sequence | |
 //! | [`flip()`] | the difference that an eye sees | exposure, pixels per degree |
 //!
 //! x is the image, r the truth. The relative squared error with a mean in its ε is that of Rousselle, Knaus and Zwicker
@@ -30,12 +31,14 @@
 
 mod absolute;
 mod bare;
+mod flicker;
 mod flip;
 mod pair;
 mod squared;
 
 pub use absolute::{energy_ratio, mae, mape};
 pub use bare::bare_irradiance;
+pub use flicker::flicker;
 pub use flip::{Flip, PIXELS_PER_DEGREE, Pictures, Seen, flip, flip_map, magma};
 pub use pair::{Correlation, Pair};
 pub use squared::{RELATIVE_TO_E0, relmse, relmse_standard, relmse_trimmed, rmse};

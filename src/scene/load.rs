@@ -66,7 +66,7 @@ fn find(name_or_path: &str) -> Result<Found, SceneError> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         return Ok(Found { name, file: name_or_path.to_owned(), text, files: Files::Beside(folder) });
     }
-    let Some((name, text)) = shipped::scenes().find(|(name, _)| *name == name_or_path) else {
+    let Some((file, text)) = shipped::text(name_or_path) else {
         let remedy = near(name_or_path, shipped::scenes().map(|(name, _)| name));
         return Err(unreadable(
             name_or_path,
@@ -75,8 +75,7 @@ fn find(name_or_path: &str) -> Result<Found, SceneError> {
             &remedy,
         ));
     };
-    let file = shipped::place(name);
-    Ok(Found { name: name.to_owned(), file, text: text.to_owned(), files: Files::Shipped })
+    Ok(Found { name: name_or_path.to_owned(), file, text: text.to_owned(), files: Files::Shipped })
 }
 
 fn read_text(file: &str, path: &Path) -> Result<String, SceneError> {

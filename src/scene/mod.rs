@@ -328,12 +328,23 @@ impl Scene {
     /// # Errors
     /// As [`Scene::load`].
     pub fn load_again(name: &str, file: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
-        load::load(if file == shipped::place(name) { name } else { file }, overrides)
+        let is_shipped = shipped::text(name).is_some_and(|(place, _)| place == file);
+        load::load(if is_shipped { name } else { file }, overrides)
     }
 
     /// Name and title of every scene inside the program, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
+    }
+
+    /// Triangles of meshes, and two of each quad; other shapes have none.
+    pub fn triangles(&self) -> u64 {
+        let of = |shape: &Shape| match shape {
+            Shape::Mesh { mesh, .. } => mesh.triangles.len() as u64,
+            Shape::Quad { .. } => 2,
+            Shape::Sphere { .. } | Shape::Canonical { .. } => 0,
+        };
+        self.objects.iter().map(|object| of(&object.shape)).sum()
     }
 
     /// The scene format as a JSON schema (draft 2020-12), for editors.

@@ -12,6 +12,16 @@ pub fn scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
     scenes.into_iter()
 }
 
+/// Scenes that stand in for a paper's own: loaded by name like any other, and no part of what methods are judged on.
+const PAPERS: &str = "papers";
+
+/// Place and text of a shipped scene.
+pub fn text(name: &str) -> Option<(String, &'static str)> {
+    let of = |file: String| Some((format!("built-in scenes/{file}"), SCENES.get_file(&file)?.contents_utf8()?));
+    let plain = !name.contains('/');
+    plain.then(|| of(format!("{name}.toml")).or_else(|| of(format!("{PAPERS}/{name}.toml")))).flatten()
+}
+
 /// The bytes of a shipped file, such as a mesh.
 pub fn bytes(file: &str) -> Option<&'static [u8]> {
     SCENES.get_file(file).map(|file| file.contents())
@@ -21,9 +31,4 @@ pub fn bytes(file: &str) -> Option<&'static [u8]> {
 pub fn title(text: &str) -> String {
     let table = text.parse::<toml::Table>().unwrap_or_default();
     table.get("title").and_then(toml::Value::as_str).unwrap_or_default().to_owned()
-}
-
-/// What stands for the path of a shipped scene.
-pub fn place(name: &str) -> String {
-    format!("built-in scenes/{name}.toml")
 }

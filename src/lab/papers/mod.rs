@@ -45,6 +45,11 @@ impl Label {
             Self::Words(words) => words.clone(),
         }
     }
+
+    /// N, of a row that is of one.
+    pub fn number(&self) -> Option<u32> {
+        if let Self::Number(n) = self { Some(*n) } else { None }
+    }
 }
 
 /// One published figure.
@@ -54,7 +59,7 @@ pub struct Figure {
     pub row: Label,
     /// Its key in `tables.toml`.
     pub column: String,
-    /// Its value; none where the paper shows a picture.
+    /// Its value; none where the paper shows a picture, or says it in words.
     pub value: Option<f64>,
 }
 
@@ -138,7 +143,8 @@ fn figures(table: &Table, axis: Option<&[Value]>) -> Vec<Figure> {
 
 /// A figure, or a list of them along the axis. Words (which variant was best) are no figures.
 fn of_value(row: &str, column: &str, value: &Value, axis: Option<&[Value]>) -> Vec<Figure> {
-    let figure = |row, value| Figure { row, column: column.to_owned(), value: Some(value) };
+    let figure =
+        |row, value: f64| Figure { row, column: column.to_owned(), value: Some(value).filter(|v| !v.is_nan()) };
     match value {
         Value::Array(values) => {
             let numbers = values.iter().enumerate();

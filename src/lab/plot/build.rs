@@ -7,11 +7,14 @@ use super::{
     chart::{Bar, BarPanel, Body, Chart, Kind, Mark, Panel, Series, side},
     read::{Results, points},
     result::{Budget, Estimate, Point, Published, PublishedRow, Step},
+    scale::{PHOTONS_AXIS, scale},
     series::{Group, groups, panel},
 };
 
 /// The device of a published figure.
 const PUBLISHED: &str = "as published";
+/// Along and up.
+const COST: [&str; 2] = [PHOTONS_AXIS, "time (ms)"];
 /// The largest N of an N × N photon buffer that a table's row may name.
 const LARGEST_SIDE: u64 = 1 << 20;
 
@@ -31,11 +34,12 @@ pub enum PlotError {
     Empty,
 }
 
-/// The chart of a kind, or of the first kind that the results have anything for. `measure` is that of the error.
+/// The chart of a kind, or of the first kind that the results have anything for. `measure` is that of the error, `along`
+/// what a scale plot runs along.
 ///
 /// # Errors
 /// [`PlotError`] where there is nothing to draw.
-pub fn chart(results: &Results, kind: Option<Kind>, measure: &str) -> Result<Chart, PlotError> {
+pub fn chart(results: &Results, kind: Option<Kind>, measure: &str, along: &str) -> Result<Chart, PlotError> {
     if results.points.is_empty() && results.budgets.is_empty() && results.tables.is_empty() {
         return Err(match results.notes.is_empty() {
             true => PlotError::Empty,
@@ -43,18 +47,19 @@ pub fn chart(results: &Results, kind: Option<Kind>, measure: &str) -> Result<Cha
         });
     }
     match kind {
-        Some(kind) => of_kind(results, kind, measure),
+        Some(kind) => of_kind(results, kind, measure, along),
         None => {
-            let found = Kind::ALL.into_iter().find_map(|kind| of_kind(results, kind, measure).ok());
-            found.map_or_else(|| of_kind(results, Kind::ErrorTime, measure), Ok)
+            let found = Kind::ALL.into_iter().find_map(|kind| of_kind(results, kind, measure, along).ok());
+            found.map_or_else(|| of_kind(results, Kind::ErrorTime, measure, along), Ok)
         }
     }
 }
 
-fn of_kind(results: &Results, kind: Kind, measure: &str) -> Result<Chart, PlotError> {
+fn of_kind(results: &Results, kind: Kind, measure: &str, along: &str) -> Result<Chart, PlotError> {
     let (body, mut caption) = match kind {
         Kind::ErrorTime => error_time(&results.points, measure),
         Kind::Cost => cost(results),
+        Kind::Scale => scale(&results.points, along),
         Kind::Stages => stages(&results.points),
         Kind::Budget => budget(&results.budgets),
     };
@@ -80,14 +85,16 @@ fn of_kind(results: &Results, kind: Kind, measure: &str) -> Result<Chart, PlotEr
     Ok(Chart { kind, measure: measure.to_owned(), body, caption })
 }
 
-type Made = (Body, Vec<String>);
+pub(super) type Made = (Body, Vec<String>);
 
 fn error_time(all: &[Point], measure: &str) -> Made {
+    let up = format!("error: {measure} (no unit)");
+    let axes = ["time of a frame (ms)", up.as_str()];
     let mark = |point: &Point| {
         let y = *point.errors.get(measure)?;
         Some(Mark { x: point.time, y, photons: point.photons, front: false, place: point.place.clone() })
     };
-    let panels: Vec<Panel> = groups(all).iter().filter_map(|group| panel(group, mark, true)).collect();
+    let panels: Vec<Panel> = groups(all).iter().filter_map(|group| panel(group, axes, mark, true)).collect();
     let layers: BTreeSet<&str> = all.iter().map(|p| p.layer.as_str()).filter(|layer| !layer.is_empty()).collect();
     let layers = layers.into_iter().collect::<Vec<_>>().join(", ");
     let of = if layers.is_empty() { String::new() } else { format!(" of {layers}") };
@@ -119,7 +126,8 @@ fn cost(results: &Results) -> Made {
         })
     };
     let mut caption = vec!["Time: median, of a frame or of the column named. Bars: intervals as measured.".to_owned()];
-    let mut panels: Vec<Panel> = groups(&results.points).iter().filter_map(|group| panel(group, mark, false)).collect();
+    let mut panels: Vec<Panel> =
+        groups(&results.points).iter().filter_map(|group| panel(group, COST, mark, false)).collect();
     match results.points.iter().filter(|point| point.photons == 0).count() {
         0 => {}
         without => caption.push(format!("{} without photons left out.", points(without))),
@@ -130,7 +138,7 @@ fn cost(results: &Results) -> Made {
             caption.push(format!("{}: {left_out} figures left out that are no ms over N.", table.id));
         }
         if !series.is_empty() {
-            panels.push(Panel { title: table.id.clone(), series, front: Vec::new() });
+            panels.push(Panel { title: table.id.clone(), axes: COST.map(str::to_owned), series, front: Vec::new() });
         }
     }
     (Body::Marks(panels), caption)

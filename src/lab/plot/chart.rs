@@ -11,6 +11,8 @@ pub enum Kind {
     ErrorTime,
     /// Time against the number of photons.
     Cost,
+    /// Time by part and memory against what they grow with, and the power of it.
+    Scale,
     /// Time by stage.
     Stages,
     /// Signed steps of an error budget.
@@ -19,13 +21,14 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, in the order in which a plot without `--kind` tries them.
-    pub const ALL: [Self; 4] = [Self::ErrorTime, Self::Cost, Self::Stages, Self::Budget];
+    pub const ALL: [Self; 5] = [Self::ErrorTime, Self::Cost, Self::Scale, Self::Stages, Self::Budget];
 
     /// As it is typed, and as files are named.
     pub fn name(self) -> &'static str {
         match self {
             Self::ErrorTime => "error-time",
             Self::Cost => "cost",
+            Self::Scale => "scale",
             Self::Stages => "stages",
             Self::Budget => "budget",
         }
@@ -65,6 +68,8 @@ pub enum Body {
 pub struct Panel {
     /// The scene, its camera and size.
     pub title: String,
+    /// What stands along and up, with units.
+    pub axes: [String; 2],
     /// One method under one set of settings on one device, each.
     pub series: Vec<Series>,
     /// Through the points that no other of the panel beats, (x, y) by x; empty where devices are mixed.

@@ -8,6 +8,7 @@ use super::{
     labels::{Area, Wanted, place},
     letters::{fitted, wrapped},
     result::Estimate,
+    scale::{PHOTONS_AXIS, powers},
     style::{self, Style},
 };
 
@@ -155,7 +156,8 @@ impl Drawing<'_> {
             })
         };
         let x = values(|mark| mark.x);
-        let x = if self.chart.kind == Kind::Cost { LogAxis::over_photons(x) } else { LogAxis::over(x) };
+        let photons = self.panel.axes[0] == PHOTONS_AXIS;
+        let x = if photons { LogAxis::over_photons(x) } else { LogAxis::over(x) };
         Frame { area, x, y: LogAxis::over(values(|mark| mark.y)) }
     }
 
@@ -184,16 +186,9 @@ impl Drawing<'_> {
         }
         let corners = [[area.x, area.y], [right, area.y], [right, bottom], [area.x, bottom], [area.x, area.y]];
         self.canvas.line(&corners, Pen { colour: GREY, ..faint });
-        let [along, up] = self.names();
-        self.canvas.text(&along, [area.x + area.w / 2.0, bottom + 36.0], MIDDLE, Anchor::Middle, BLACK);
-        self.canvas.upwards(&fitted(&up, MIDDLE, outer.h - 40.0), [outer.x + 20.0, area.y + area.h / 2.0], MIDDLE);
-    }
-
-    fn names(&self) -> [String; 2] {
-        match self.chart.kind {
-            Kind::ErrorTime => ["time of a frame (ms)".to_owned(), format!("error: {} (no unit)", self.chart.measure)],
-            _ => ["N (photons)".to_owned(), "time (ms)".to_owned()],
-        }
+        let [along, up] = &self.panel.axes;
+        self.canvas.text(along, [area.x + area.w / 2.0, bottom + 36.0], MIDDLE, Anchor::Middle, BLACK);
+        self.canvas.upwards(&fitted(up, MIDDLE, outer.h - 40.0), [outer.x + 20.0, area.y + area.h / 2.0], MIDDLE);
     }
 
     fn front(&mut self, frame: &Frame) {
@@ -233,6 +228,7 @@ impl Drawing<'_> {
         let fronts = |mark: &&Mark| self.chart.kind == Kind::ErrorTime && mark.front && mark.photons > 0;
         let texts = all().filter(edge).map(|mark| (mark, at_edge(mark)));
         let texts = texts.chain(all().filter(fronts).map(|mark| (mark, format!("N={}", side(mark.photons)))));
+        let texts = texts.chain(growth(self.chart.kind, self.panel));
         let texts: Vec<(&Mark, String)> = texts.take(LABELLED).collect();
         let size = |text: &str| {
             let area = area_of(text, [0.0, 0.0], SMALL, Anchor::Start);
@@ -265,6 +261,13 @@ impl Drawing<'_> {
         }
         boxes
     }
+}
+
+/// Of a scale plot, the powers beside the last mark of each series.
+fn growth(kind: Kind, panel: &Panel) -> Vec<(&Mark, String)> {
+    let of = |series: &Series| powers(series).map(|[all, last]| format!("^{all:.2}, ^{last:.2}"));
+    let series = panel.series.iter().filter(|_| kind == Kind::Scale);
+    series.filter_map(|series| Some((series.marks.last()?, of(series)?))).collect()
 }
 
 /// The boxes that a mark's intervals fill.

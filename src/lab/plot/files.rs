@@ -130,6 +130,7 @@ pub fn csv_table(chart: &Chart) -> Table {
 fn axes(chart: &Chart) -> [[&'static str; 3]; 2] {
     match chart.kind {
         super::Kind::ErrorTime => [["time_ms", "time_low_ms", "time_high_ms"], ["error", "error_low", "error_high"]],
+        super::Kind::Scale => [["x", "x_low", "x_high"], ["y", "y_low", "y_high"]],
         _ => [["n", "n_low", "n_high"], ["time_ms", "time_low_ms", "time_high_ms"]],
     }
 }

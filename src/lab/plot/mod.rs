@@ -17,6 +17,7 @@ mod pareto;
 mod read;
 mod report;
 mod result;
+mod scale;
 mod series;
 mod style;
 
@@ -30,3 +31,4 @@ pub use labels::Area;
 pub use read::{ReadError, Results};
 pub use report::PlotReport;
 pub use result::{Budget, Estimate, Point, Published, PublishedRow, Step};
+pub use scale::Growth;

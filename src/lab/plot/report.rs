@@ -9,6 +9,7 @@ use super::{
     files::csv_table,
     read::Results,
     result::Estimate,
+    scale::{Growth, growth},
 };
 use crate::{
     lab::{Cell, Report, Table},
@@ -27,6 +28,8 @@ pub struct PlotReport {
     sources: Vec<String>,
     series: Vec<SeriesRow>,
     equal: Vec<EqualRow>,
+    /// Of a scale plot.
+    growth: Vec<Growth>,
     caption: Vec<String>,
     /// Points that were left out.
     left_out: Vec<String>,
@@ -70,11 +73,12 @@ impl PlotReport {
             sources: results.sources.clone(),
             series: series.map(row).collect(),
             equal,
+            growth: if chart.kind == Kind::Scale { growth(panels) } else { Vec::new() },
             caption: chart.caption.clone(),
             left_out: results.notes.clone(),
             drawn: match chart.body {
-                Body::Marks(_) => figures(chart),
-                Body::Bars(..) => csv_table(chart),
+                Body::Marks(_) if chart.kind != Kind::Scale => figures(chart),
+                Body::Marks(_) | Body::Bars(..) => csv_table(chart),
             },
         }
     }
@@ -106,6 +110,15 @@ impl PlotReport {
         };
         let columns = vec!["scene", "equal", "series", "value", "interval", "ratio", "ratio interval", "verdict"];
         Table { name: "equal", columns, rows: self.equal.iter().map(row).collect() }
+    }
+
+    fn growth_table(&self) -> Table {
+        let row = |row: &Growth| {
+            let powers = [row.overall, row.last].map(|power| Cell::Real(power.0, 2));
+            [&row.panel, &row.series].map(Cell::text).into_iter().chain(powers).collect()
+        };
+        let columns = vec!["scene", "series", "power", "at its end"];
+        Table { name: "growth", columns, rows: self.growth.iter().map(row).collect() }
     }
 
     fn series_table(&self) -> Table {
@@ -153,6 +166,7 @@ impl Report for PlotReport {
         let (drawn, bars) = (self.drawn.clone(), self.series.is_empty());
         match drawn.rows.len() {
             _ if bars => vec![drawn],
+            _ if !self.growth.is_empty() => vec![self.growth_table()],
             0..=LISTED => vec![drawn, self.series_table(), self.equal_table()],
             _ => vec![self.series_table(), self.equal_table()],
         }

@@ -84,6 +84,12 @@ pub struct Point {
     pub settings: BTreeMap<String, String>,
     /// N: photons of the light buffer, 0 without.
     pub photons: u64,
+    /// Lights and triangles of the scene, and bytes of the device's memory, where it is said.
+    pub lights: Option<u64>,
+    /// As `lights`.
+    pub triangles: Option<u64>,
+    /// As `lights`.
+    pub bytes: Option<u64>,
     /// The device's name.
     pub device: String,
     /// True where times are not those of a GPU.
@@ -213,6 +219,9 @@ pub(super) fn point(value: Value, place: &str) -> Result<Point, serde_json::Erro
         #[serde(default)]
         settings: Map<String, Value>,
         photons: u64,
+        lights: Option<u64>,
+        triangles: Option<u64>,
+        bytes: Option<u64>,
         device: Device,
         repeat: Option<u64>,
         time: Estimate,
@@ -243,6 +252,9 @@ pub(super) fn point(value: Value, place: &str) -> Result<Point, serde_json::Erro
         set: typed(raw.set),
         settings: typed(raw.settings),
         photons: raw.photons,
+        lights: raw.lights,
+        triangles: raw.triangles,
+        bytes: raw.bytes,
         software: raw.device.is_software(),
         device: raw.device.name,
         repeat: raw.repeat,
@@ -296,6 +308,9 @@ pub(super) fn render(value: Value, place: &str) -> Result<Point, serde_json::Err
         set: BTreeMap::new(),
         settings: raw.settings.iter().map(|(key, value)| (key.clone(), plain(value))).collect(),
         photons: side * side,
+        lights: None,
+        triangles: None,
+        bytes: None,
         software: raw.device.is_software(),
         device: raw.device.name,
         repeat: Some(raw.frames.span_ms.len() as u64),

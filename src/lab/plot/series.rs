@@ -32,23 +32,29 @@ pub struct Name {
 
 /// Points by scene and series, each in the order of their names.
 pub fn groups(points: &[Point]) -> Vec<Group<'_>> {
-    let mut scenes: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
-    for point in points {
-        scenes.entry(title(point)).or_default().push(point);
-    }
-    scenes.into_iter().map(|(title, points)| Group { title, series: split(&points) }).collect()
+    along_groups(points, ALONG, ALONG)
 }
 
-fn title(point: &Point) -> String {
+/// As [`groups`], of series that run along the setting `along`, and along all that begin with `scene`.
+pub fn along_groups<'a>(points: &'a [Point], along: &str, scene: &str) -> Vec<Group<'a>> {
+    let along = |key: &str| key == along || (along == "photons" && key == ALONG) || key.starts_with(scene);
+    let mut scenes: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
+    for point in points {
+        scenes.entry(title(point, &along)).or_default().push(point);
+    }
+    scenes.into_iter().map(|(title, points)| Group { title, series: split(&points, &along) }).collect()
+}
+
+fn title(point: &Point, along: &dyn Fn(&str) -> bool) -> String {
     let [width, height] = point.size;
-    let changed = point.set.iter().filter(|(key, _)| key.starts_with(OF_SCENE));
+    let changed = point.set.iter().filter(|(key, _)| key.starts_with(OF_SCENE) && !along(key));
     let changed: String = changed.map(|(key, value)| format!(", {}={value}", &key[OF_SCENE.len()..])).collect();
     let camera = if point.camera.is_empty() { String::new() } else { format!(", camera {}", point.camera) };
     format!("{}{changed}{camera}, {width} × {height}", point.scene)
 }
 
-fn split<'a>(points: &[&'a Point]) -> BTreeMap<Name, Vec<&'a Point>> {
-    let differing = differing(points);
+fn split<'a>(points: &[&'a Point], along: &dyn Fn(&str) -> bool) -> BTreeMap<Name, Vec<&'a Point>> {
+    let differing = differing(points, along);
     let devices: BTreeSet<_> = points.iter().map(|point| &point.device).collect();
     let mut series: BTreeMap<Name, Vec<&Point>> = BTreeMap::new();
     for point in points {
@@ -64,8 +70,8 @@ fn split<'a>(points: &[&'a Point]) -> BTreeMap<Name, Vec<&'a Point>> {
 }
 
 /// Keys that some point sets, of which two points that have them differ.
-fn differing<'a>(points: &[&'a Point]) -> Vec<&'a str> {
-    let along = |key: &str| key == ALONG || key.starts_with(OF_SCENE);
+fn differing<'a>(points: &[&'a Point], along: &dyn Fn(&str) -> bool) -> Vec<&'a str> {
+    let along = |key: &str| along(key) || key.starts_with(OF_SCENE);
     let keys: BTreeSet<_> =
         points.iter().flat_map(|point| point.set.keys()).map(String::as_str).filter(|key| !along(key)).collect();
     let differs = |key: &&str| {
@@ -85,7 +91,7 @@ fn value<'a>(point: &'a Point, key: &str) -> Option<&'a str> {
 }
 
 /// A panel of a group, `mark` giving the point's place, if it has one. Series without marks are left out.
-pub fn panel(group: &Group, mark: impl Fn(&Point) -> Option<Mark>, with_front: bool) -> Option<Panel> {
+pub fn panel(group: &Group, axes: [&str; 2], mark: impl Fn(&Point) -> Option<Mark>, with_front: bool) -> Option<Panel> {
     let mut series: Vec<Series> = Vec::new();
     for (name, points) in &group.series {
         let mut marks: Vec<Mark> = points.iter().filter_map(|point| mark(point)).collect();
@@ -101,5 +107,5 @@ pub fn panel(group: &Group, mark: impl Fn(&Point) -> Option<Mark>, with_front: b
         true => Front::of(series.iter().flat_map(|series| &series.marks)).places(),
         false => Vec::new(),
     };
-    (!series.is_empty()).then(|| Panel { title: group.title.clone(), series, front })
+    (!series.is_empty()).then(|| Panel { title: group.title.clone(), axes: axes.map(str::to_owned), series, front })
 }

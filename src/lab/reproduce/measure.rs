@@ -2,6 +2,7 @@
 
 use std::{
     cell::Cell,
+    collections::BTreeMap,
     ops::ControlFlow,
     sync::Arc,
     time::{Duration, Instant},
@@ -9,7 +10,9 @@ use std::{
 
 use super::{
     Extent, Watch,
-    columns::{self, Part, Subject, Variant},
+    asked::Place,
+    columns::{self, Part, Variant},
+    subject::Subject,
 };
 use crate::{
     gpu::{Gpu, GpuError, Sources},
@@ -50,8 +53,12 @@ pub struct Measured {
     pub stages: Vec<String>,
     /// Photons that arrived, of those emitted, and their share of the flux.
     pub valid: [f64; 2],
-    /// Points that gathering draws, those of every step of a traversal among them.
-    pub points: Option<u64>,
+    /// Photons emitted.
+    pub emitted: u64,
+    /// Points that each stage of gathering draws, where it draws points: those of every step of a traversal among them.
+    pub counts: Vec<(String, u64)>,
+    /// Of its scene.
+    pub triangles: u64,
     /// Flux in the map over the flux that arrived in it.
     pub kept: Option<f64>,
     /// Of the picture; none before it was judged.
@@ -71,6 +78,29 @@ pub struct Run {
     pub left_out: LeftOut,
     pub reference: String,
     pub warnings: Vec<String>,
+}
+
+impl Run {
+    /// Where a variant is among the measured.
+    ///
+    /// # Errors
+    /// Why it is not.
+    pub fn find(&self, Place { variant, side, .. }: Place) -> Result<usize, String> {
+        self.all.iter().position(|m| m.variant == variant && m.side == side).ok_or_else(|| self.why(side))
+    }
+
+    /// Why an N was not run.
+    pub fn why(&self, side: u32) -> String {
+        let why = self.left_out.iter().find(|(n, _)| *n == side).map(|(_, why)| why.clone());
+        why.unwrap_or_else(|| "was not run".to_owned())
+    }
+}
+
+impl Measured {
+    /// Points that gathering draws in all, where it draws points.
+    pub fn points(&self) -> Option<u64> {
+        self.counts.iter().map(|(_, points)| *points).reduce(|a, b| a + b)
+    }
 }
 
 /// N that are not run, and why.
@@ -129,10 +159,11 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
     let layers = renderer.layers()?;
     let provenance = Provenance::new(&job, &frame, gpu.info(), Vec::new());
     let counters = renderer.counters(&frame)?;
-    let points = counters.iter().filter(|(stage, _)| Part::Gather.holds(stage)).filter_map(|(_, c)| c.points);
-    let points = points.reduce(|a, b| a + b);
+    let counts = counters.iter().filter(|(stage, _)| Part::Gather.holds(stage));
+    let counts = counts.filter_map(|(stage, c)| Some((stage.clone(), c.points?))).collect();
     let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-    let photons = share(account.counts[VALID] as f64, account.emitted() as f64);
+    let emitted = account.emitted();
+    let photons = share(account.counts[VALID] as f64, emitted as f64);
     let valid = [photons, share(account.valid_w(), account.emitted_w())];
     let exposure_ev = exposure(&job.settings, &job.scene);
     let picture = Picture { file: variant.name(), layers: layers.clone(), about: provenance.attributes() };
@@ -143,7 +174,9 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
             side,
             stages: renderer.stages(),
             valid,
-            points,
+            emitted,
+            counts,
+            triangles: job.scene.triangles(),
             kept,
             relmse: None,
             layers,
@@ -153,34 +186,39 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
     ))
 }
 
-/// The N of the table, and the variants that its columns take.
-fn wanted(published: &Published) -> (Vec<u32>, Vec<Variant>) {
-    let (mut sides, mut variants) = (Vec::new(), Vec::new());
-    for figure in &published.figures {
-        if let Ok((variant, side, _)) = columns::runs(published, figure) {
-            if !sides.contains(&side) {
-                sides.push(side);
-            }
-            if !variants.contains(&variant) {
-                variants.push(variant);
-            }
+/// The N of the table, rising, and the variants that are wanted at each.
+fn wanted(published: &Published) -> Vec<(u32, Vec<Variant>)> {
+    let mut wanted: BTreeMap<u32, Vec<Variant>> = BTreeMap::new();
+    let asked = published.figures.iter().filter_map(|figure| columns::asked(published, figure).ok());
+    for Place { variant, side, .. } in asked.flat_map(|asked| asked.places()) {
+        let variants = wanted.entry(side).or_default();
+        if !variants.contains(&variant) {
+            variants.push(variant);
         }
     }
-    sides.sort_unstable();
-    (sides, variants)
+    wanted.into_iter().collect()
+}
+
+/// Scenes read so far.
+type Scenes = Vec<(Subject, Arc<Scene>)>;
+
+fn scene(scenes: &mut Scenes, subject: Subject) -> Result<Arc<Scene>, LabError> {
+    if let Some((_, scene)) = scenes.iter().find(|(known, _)| *known == subject) {
+        return Ok(scene.clone());
+    }
+    let scene = Arc::new(subject.load()?);
+    scenes.push((subject, scene.clone()));
+    Ok(scene)
 }
 
 /// Renderers for every N that fits, smallest first, and why others do not.
 fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> Result<(Vec<Ready>, LeftOut), LabError> {
-    let (sides, variants) = wanted(published);
-    let subject = variants.first().map_or(Subject::Still, |variant| variant.subject);
-    let scene = Arc::new(Scene::load(subject.scene(), &[]).expect("a shipped scene loads: a test loads them all"));
-    let (mut ready, mut left_out) = (Vec::new(), Vec::new());
+    let (mut ready, mut left_out, mut scenes) = (Vec::new(), Vec::new(), Vec::new());
     let started = Instant::now();
     let (mut frames_s, mut last, mut bytes) = (0.0, 0.0, 0);
-    for side in sides {
+    for (side, variants) in wanted(published) {
         let frames = f64::from(extent.rounds + MOST_WARMUP);
-        let ahead = started.elapsed().as_secs_f64() + frames_s + frames * GROWTH * last;
+        let ahead = started.elapsed().as_secs_f64() + frames_s + frames * GROWTH * last * variants.len() as f64;
         let too_large = format!("--quick takes N up to {}", extent.most_side);
         let why = if side > extent.most_side {
             Some(too_large)
@@ -191,10 +229,10 @@ fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> R
             if watch(&format!("preparing {side}x{side} photons")).is_break() {
                 return Err(LabError::Interrupted);
             }
-            match of_side(gpu, &scene, (side, &variants), extent, bytes)? {
+            match of_side(gpu, &mut scenes, (side, &variants), extent, bytes)? {
                 Ok((made, taken, frame_s)) => {
                     ready.extend(made);
-                    (bytes, last) = (taken, frame_s);
+                    (bytes, last) = (taken, frame_s / variants.len() as f64);
                     frames_s += frames * frame_s;
                     None
                 }
@@ -211,7 +249,7 @@ type OfSide = Result<(Vec<Ready>, u64, f64), String>;
 
 fn of_side(
     gpu: &Gpu,
-    scene: &Arc<Scene>,
+    scenes: &mut Scenes,
     (side, variants): (u32, &[Variant]),
     extent: &Extent,
     mut bytes: u64,
@@ -221,7 +259,7 @@ fn of_side(
     for &variant in variants {
         let settings = variant.settings(side).expect("the settings of a variant are shipped ones: a test runs them");
         let job = Job {
-            scene: scene.clone(),
+            scene: scene(scenes, variant.subject)?,
             providers: Providers::of(maps),
             settings,
             camera: "region".to_owned(),

@@ -1,10 +1,13 @@
 //! A published table beside a run of it here: times of the same phases, the shape that they make, and the error of each
 //! picture, which no paper printed.
 
+mod asked;
 mod columns;
 mod measure;
 mod report;
 mod strip;
+mod subject;
+mod text;
 
 use std::ops::ControlFlow;
 
@@ -50,7 +53,10 @@ pub type Watch<'w> = &'w mut dyn FnMut(&str) -> ControlFlow<()>;
 
 /// Whether any column of a table can be run.
 pub fn can_run(published: &Published) -> bool {
-    published.figures.iter().any(|figure| columns::runs(published, figure).is_ok())
+    published
+        .figures
+        .iter()
+        .any(|figure| columns::asked(published, figure).is_ok_and(|asked| !asked.places().is_empty()))
 }
 
 /// Runs what can be run of a table.

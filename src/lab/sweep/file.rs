@@ -7,7 +7,7 @@ use toml::{Table, Value};
 
 use super::{Reference, Spec, Sweep};
 use crate::{
-    lab::{Picture, picture::REGION},
+    lab::{Picture, Sequence, picture::REGION},
     methods,
     names::near,
     renderer::{self, Job, Providers},
@@ -41,6 +41,7 @@ struct SweepFile {
     reference: String,
     #[serde(default = "seconds")]
     seconds: f64,
+    flicker: Option<String>,
     #[serde(default)]
     set: Table,
 }
@@ -75,6 +76,7 @@ pub(super) fn load(file: &str) -> Result<Sweep, SceneError> {
     let written = Written::read(file)?;
     let parsed: SweepFile = written.parse()?;
     check(&written, &parsed)?;
+    let flicker = flicker(&written, &parsed)?;
     let folder = Path::new(file).parent().unwrap_or(Path::new(""));
     let axes = axes(&written, &parsed.set)?;
     let count = axes.iter().map(|axis| axis.values.len()).chain([parsed.scenes.len(), parsed.methods.len()]);
@@ -93,7 +95,26 @@ pub(super) fn load(file: &str) -> Result<Sweep, SceneError> {
         }
     }
     let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Sweep::new(name, file, points, (parsed.rounds, parsed.layer, parsed.seconds)))
+    Ok(Sweep { flicker, ..Sweep::new(name, file, points, (parsed.rounds, parsed.layer, parsed.seconds)) })
+}
+
+/// The frames whose flicker is measured: each has a truth of its own, which `auto` alone makes.
+fn flicker(written: &Written, parsed: &SweepFile) -> Result<Option<Sequence>, SceneError> {
+    let Some(text) = &parsed.flicker else { return Ok(None) };
+    if parsed.reference != "auto" {
+        let found = format!("reference = \"{}\"", parsed.reference);
+        let remedy = "write `reference = \"auto\"`, or take `flicker` out";
+        return Err(written.fault(&["flicker"], "a truth for each frame", found, remedy));
+    }
+    let sequence: Sequence = text.parse().map_err(|why: String| {
+        let remedy = "write a range of times, such as \"0..0.6@10\"";
+        written.fault(&["flicker"], why, format!("`{text}`"), remedy)
+    })?;
+    if sequence.frames() < 2 {
+        let remedy = "give more frames a second, or more time";
+        return Err(written.fault(&["flicker"], "two frames or more", "one", remedy));
+    }
+    Ok(Some(sequence))
 }
 
 fn check(written: &Written, parsed: &SweepFile) -> Result<(), SceneError> {

@@ -11,6 +11,7 @@ use crate::{
         timing::{Series, Summary},
     },
     metrics::Measure,
+    scene::Scene,
     stats::Number,
     store::Key,
 };
@@ -46,6 +47,12 @@ pub(super) fn set(spec: &Spec) -> Value {
     spec.set.iter().map(|(key, value)| (key.clone(), Value::from(value.clone()))).collect::<Map<_, _>>().into()
 }
 
+/// What cost grows with, beside photons and settings; and the device's memory that the point takes.
+pub(super) fn scale(scene: &Scene, bytes: u64) -> [(String, Value); 3] {
+    let counts = [("lights", scene.lights.len() as u64), ("triangles", scene.triangles()), ("bytes", bytes)];
+    counts.map(|(name, count)| (name.to_owned(), count.into()))
+}
+
 /// `time` and `stages`, ms.
 pub(super) fn times(series: &Series) -> [(&'static str, Value); 2] {
     let named = |stage: &String| {
@@ -73,7 +80,8 @@ pub(super) fn error(comparison: &Comparison) -> Value {
     })
 }
 
-fn measure(figure: Measure) -> Value {
+/// A figure with its interval.
+pub(super) fn measure(figure: Measure) -> Value {
     let parts = [("value", Some(figure.value)), ("low", figure.low), ("high", figure.high)];
     let known = parts.into_iter().chain([("truth_noise", figure.truth_noise)]);
     known.filter_map(|(name, part)| Some((name.to_owned(), Number(part?).into()))).collect::<Map<_, _>>().into()

@@ -47,8 +47,12 @@ pub fn merge(bench: &Bench) -> Merged {
 }
 
 /// Columns beside what points set: a name, and where in a line it stands.
-const COLUMNS: [(&str, &str); 16] = [
+const COLUMNS: [(&str, &str); 21] = [
     ("photons", "/photons"),
+    ("lights", "/lights"),
+    ("triangles", "/triangles"),
+    ("bytes", "/bytes"),
+    ("kept", "/kept"),
     ("device", "/device/name"),
     ("device kind", "/device/kind"),
     ("repeat", "/repeat"),
@@ -62,6 +66,7 @@ const COLUMNS: [(&str, &str); 16] = [
     ("relmse high", "/error/measures/relmse/high"),
     ("energy ratio", "/error/measures/energy_ratio/value"),
     ("flip", "/error/measures/flip/value"),
+    ("flicker", "/error/measures/flicker/value"),
     ("reference", "/error/reference"),
     ("failed", "/failed"),
 ];

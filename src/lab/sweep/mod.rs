@@ -16,7 +16,7 @@ mod status;
 
 use std::{collections::BTreeSet, io, path::PathBuf, sync::Arc};
 
-use super::{LabError, Picture, provenance::in_force, render_report::method_name};
+use super::{LabError, Picture, Sequence, provenance::in_force, render_report::method_name};
 use crate::{
     gpu::{Gpu, Sources},
     places::Folder,
@@ -95,6 +95,8 @@ pub struct Sweep {
     layer: String,
     /// s
     seconds: f64,
+    /// Frames whose flicker is measured.
+    flicker: Option<Sequence>,
 }
 
 /// Which points of a sweep: those whose index, modulo `of`, is `index`.
@@ -142,7 +144,7 @@ impl Sweep {
         let (all, mut seen) = (points.len(), BTreeSet::new());
         points.retain(|spec| seen.insert(spec.content()));
         let repeated = all - points.len();
-        Self { name, file: file.to_owned(), repeated, points, rounds, layer, seconds }
+        Self { name, file: file.to_owned(), repeated, points, rounds, layer, seconds, flicker: None }
     }
 
     /// Points that differ.
@@ -194,7 +196,7 @@ impl Bench<'_> {
             Err(error) => error.to_string(),
         };
         let (device, sweep) = (self.gpu.info(), self.sweep);
-        let timed = format!("{} {} {}", sweep.rounds, sweep.layer, sweep.seconds);
+        let timed = format!("{} {} {} {:?}", sweep.rounds, sweep.layer, sweep.seconds, sweep.flicker);
         let program = [SCHEMA, env!("CARGO_PKG_VERSION"), env!("NEPHROID_CODE"), env!("NEPHROID_RUSTC")];
         let about = [&spec.content(), &timed, &device.name, &device.driver, &device.api, &shaders];
         (Key::of(program.into_iter().chain(about.map(String::as_str))), planned)

@@ -1,6 +1,6 @@
 //! One point: rendered, timed, judged and kept.
 
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
 use serde_json::{Map, Value};
 
@@ -15,6 +15,7 @@ use crate::{
         render_report::warnings,
         timing::{Rounds, Variant},
     },
+    metrics::Measure,
     passes::light,
     renderer::{Frame, Planned, Renderer},
     store::Key,
@@ -65,6 +66,7 @@ impl Bench<'_> {
         let job = &spec.job;
         let busy = host.busy(go_on)?;
         let photons = if planned.photon_bytes > 0 { u64::from(job.settings.whole(&light::SIDE)).pow(2) } else { 0 };
+        let bytes = planned.plan.bytes();
         let mut renderer = Renderer::planned(self.gpu, job, planned, self.sources.clone())?;
         let stages = renderer.stages();
         drop(busy);
@@ -80,18 +82,57 @@ impl Bench<'_> {
         let _busy = host.busy(go_on)?;
         let tick_ms = f64::from(self.gpu.info().timestamp_period) * 1e-6;
         let mut said: Vec<String> = job.scene.warnings.clone();
-        said.extend(warnings(&renderer.account()?, job));
+        let account = renderer.account()?;
+        said.extend(warnings(&account, job));
         said.extend(timed.warnings(tick_ms));
         let about = Provenance::new(job, &frame, self.gpu.info(), Vec::new()).attributes();
         let picture = Picture { file: job.scene.name.clone(), layers: renderer.layers()?, about };
         let mut line = Map::from_iter([("photons".to_owned(), photons.into()), ("alone".to_owned(), alone.into())]);
+        line.extend(line::scale(&job.scene, bytes));
+        line.extend(renderer.energy(&account)?.ratio.map(|kept| ("kept".to_owned(), kept.into())));
         line.extend(line::times(&timed.series[0]).map(|(name, value)| (name.to_owned(), value)));
-        if let Some((error, more)) = self.judge(spec, picture, host, go_on)? {
+        if let Some((mut error, more)) = self.judge(spec, picture, host, go_on)? {
+            if let Some(flicker) = self.flicker(spec, &mut renderer, host, go_on)? {
+                error["measures"]["flicker"] = line::measure(flicker);
+            }
             line.insert("error".to_owned(), error);
             said.extend(more);
         }
         line.insert("warnings".to_owned(), said.into());
         Ok(line)
+    }
+
+    /// Of the frames that the sweep asks for, each against a truth of its own time.
+    fn flicker(
+        &self,
+        spec: &Spec,
+        renderer: &mut Renderer,
+        host: &Host,
+        go_on: GoOn,
+    ) -> Result<Option<Measure>, LabError> {
+        let Some(sequence) = self.sweep.flicker else { return Ok(None) };
+        let (job, mut frames) = (&spec.job, Vec::new());
+        for time in sequence.times() {
+            let frame = Frame { time, ..Frame::default() };
+            renderer.frame(&frame)?;
+            let about = Provenance::new(job, &frame, self.gpu.info(), Vec::new()).attributes();
+            frames.push(Picture { file: job.scene.name.clone(), layers: renderer.layers()?, about });
+        }
+        let truths = self.references(spec, &frames, host, go_on)?;
+        Ok(lab::flicker(&frames, &truths, &self.sweep.layer)?)
+    }
+
+    /// The truths of pictures; one that two made at once would be made twice.
+    fn references(
+        &self,
+        spec: &Spec,
+        pictures: &[Picture],
+        host: &Host,
+        go_on: GoOn,
+    ) -> Result<Vec<Arc<Picture>>, LabError> {
+        let _making = host.making(&format!("truth-{}", spec.job.scene.source.hash), go_on)?;
+        let auto = Auto { layer: &self.sweep.layer, seconds: self.sweep.seconds, store: &self.store };
+        auto.references(pictures, &mut |_| go_on())
     }
 
     fn judge(
@@ -106,14 +147,7 @@ impl Bench<'_> {
         let reference = match &spec.reference {
             Reference::None => return Ok(None),
             Reference::File { picture, .. } => picture.clone(),
-            Reference::Auto => {
-                // One truth that two made at once would be made twice.
-                let scene = &spec.job.scene.source.hash;
-                let _making = host.making(&format!("truth-{scene}"), go_on)?;
-                let auto = Auto { layer, seconds: self.sweep.seconds, store: &self.store };
-                let mut found = auto.references(&pictures, &mut |_| go_on())?;
-                found.remove(0)
-            }
+            Reference::Auto => self.references(spec, &pictures, host, go_on)?.remove(0),
         };
         let comparison = lab::compare(&pictures[0], &reference, layer)?;
         Ok(Some((line::error(&comparison), comparison.warnings)))

@@ -55,7 +55,7 @@ fn no_two_texts_overlap_and_none_leaves_the_page() {
         ("crowd", crowd(300, 100)),
     ];
     for (case, points) in cases {
-        for kind in [Kind::ErrorTime, Kind::Cost, Kind::Stages] {
+        for kind in [Kind::ErrorTime, Kind::Cost, Kind::Scale, Kind::Stages] {
             assert_apart(&draw(&chart_of(&points, kind)), &format!("{case}, {kind}"));
         }
     }
@@ -107,7 +107,7 @@ fn what_has_no_place_is_drawn_at_the_edge_and_said() {
 
 #[test]
 fn software_devices_are_named_as_such() {
-    for kind in [Kind::ErrorTime, Kind::Cost, Kind::Stages] {
+    for kind in [Kind::ErrorTime, Kind::Cost, Kind::Scale, Kind::Stages] {
         let caption = chart_of(&curve("s", "maps", 1.0), kind).caption;
         assert!(caption.iter().any(|line| line.starts_with("Software device: llvmpipe")), "{caption:?}");
     }

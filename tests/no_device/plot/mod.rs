@@ -46,5 +46,5 @@ fn results(points: &[Value]) -> Results {
 }
 
 fn chart_of(points: &[Value], kind: Kind) -> Chart {
-    chart(&results(points), Some(kind), "relmse").unwrap()
+    chart(&results(points), Some(kind), "relmse", "photons").unwrap()
 }

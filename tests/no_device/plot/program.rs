@@ -46,6 +46,26 @@ fn svg_png_csv_and_report() {
 }
 
 #[test]
+fn a_scale_plot_says_what_power_each_part_grows_with() {
+    // Twice the side in ten times the time: log 10 over log 4 in photons.
+    let (_folder, file) = points_file(&curve("s", "maps", 1.0));
+    let output = plot(&file, &["--format", "json", "--kind", "scale"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let growth = report["growth"].as_array().unwrap();
+    let panels: Vec<_> = growth.iter().map(|row| row["panel"].as_str().unwrap().rsplit(' ').next().unwrap()).collect();
+    assert_eq!(panels, ["frame", "light", "maps"], "no bytes are said, and so no memory is drawn");
+    for row in growth {
+        let [overall, last] = ["overall", "last"].map(|name| row[name].as_f64().unwrap());
+        let power = 10f64.ln() / 4f64.ln();
+        assert!((overall - power).abs() < 1e-9 && (last - power).abs() < 1e-9, "{row}");
+    }
+    let output = plot(&file, &["--kind", "scale", "--along", "lights"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("3"), "no point says its lights");
+}
+
+#[test]
 fn budgets_and_tables_have_plots_of_their_own() {
     let step = |name: &str, gain: f64| {
         json!({ "name": name, "energy": { "gain": gain, "low": gain, "high": gain },

@@ -13,7 +13,7 @@ fn leaves(path: &str, value: &Value, into: &mut Vec<(String, f64)>) {
         Value::Table(table) => table.iter().for_each(|(key, v)| leaves(&format!("{path}.{key}"), v, into)),
         Value::Array(values) => values.iter().for_each(|v| leaves(path, v, into)),
         Value::Integer(n) => into.push((path.to_owned(), *n as f64)),
-        Value::Float(x) => into.push((path.to_owned(), *x)),
+        Value::Float(x) if !x.is_nan() => into.push((path.to_owned(), *x)), // what is said in words is no figure
         _ => {}
     }
 }
