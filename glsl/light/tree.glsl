@@ -21,6 +21,7 @@ struct Branch {
     uint media;
     int events;
     int met; // surfaces, those without an interface too
+    uint chain; // of objects met, and whether light went on through them
 };
 
 Branch put_off_branches[PUT_OFF];
@@ -44,18 +45,20 @@ void end_branch(inout Photon p, Branch b, uint status) {
     p.flux = b.flux;
     p.exit = b.exit;
     p.direction = b.d;
+    p.chain = b.chain;
     end_photon(p);
     p.emitted = vec3(0.0);
     p.absorbed = vec3(0.0);
     p.bent = 0u;
 }
 
-void go_on(inout Branch b, Surface s, vec3 d, uint media) {
+void go_on(inout Branch b, Surface s, vec3 d, uint media, bool through) {
     b.o = leave(s, d);
     b.d = d;
     b.exit = s.p;
     b.media = media;
     b.events++;
+    b.chain = mixed(b.chain + 2u * (s.object + 1u) + (through ? 1u : 0u));
 }
 
 // A mirror takes its share; true if the branch goes on.
@@ -66,7 +69,7 @@ bool follow_mirror(inout Photon p, inout Branch b, Surface s, Material m, float 
     vec3 kept = b.flux * mirror_share(m, b.d, r, b.media);
     p.absorbed += b.flux - kept;
     b.flux = kept;
-    go_on(b, s, r, b.media);
+    go_on(b, s, r, b.media, false);
     uint status = followed(kept, faint);
     if (status != PHOTON_NONE) end_branch(p, b, status);
     return status == PHOTON_NONE;
@@ -85,8 +88,8 @@ bool follow_interface(inout Photon p, inout Branch b, Surface s, float faint, in
     near.flux = b.flux - far.flux;
     bool reflects = any(greaterThan(near.flux, vec3(0.0)));
     if (reflects) bend_reflect(s, b.d, from, to, back, unused, p.bent);
-    if (passes) go_on(far, s, through, beyond);
-    if (reflects) go_on(near, s, back, b.media);
+    if (passes) go_on(far, s, through, beyond, true);
+    if (reflects) go_on(near, s, back, b.media, false);
     bool fainter_is_near = sum_of_bands(near.flux) < sum_of_bands(far.flux);
     Branch fainter = fainter_is_near ? near : far;
     Branch brighter = fainter_is_near ? far : near;
@@ -145,7 +148,7 @@ void trace_tree(LightSample light) {
     if (!any(greaterThan(light.flux, vec3(0.0)))) return; // beyond a spot's edge
     p.emitted = light.flux;
     float faint = FAINT * sum_of_bands(light.flux);
-    Branch b = Branch(light.origin, light.direction, light.flux, vec3(0.0), light.media, 0, 0);
+    Branch b = Branch(light.origin, light.direction, light.flux, vec3(0.0), light.media, 0, 0, 0u);
     int height = 0;
     for (;;) {
         Hit hit;

@@ -19,9 +19,9 @@ layout(push_constant, scalar) uniform Push {
 #include "maps/cells.glsl"
 #include "maps/photons.glsl"
 
-layout(set = 0, binding = 14) uniform sampler2D photons_way;
-layout(set = 0, binding = 15) uniform sampler2D corners_hit;
-layout(set = 0, binding = 16) uniform sampler2D corners_way;
+layout(set = 0, binding = 14) uniform PHOTON_SAMPLER photons_way;
+layout(set = 0, binding = 15) uniform PHOTON_SAMPLER corners_hit;
+layout(set = 0, binding = 16) uniform PHOTON_SAMPLER corners_way;
 #ifdef REFINED
 layout(set = 0, binding = 18, scalar) writeonly buffer List { uint data[]; } cells_list;
 #endif
@@ -49,44 +49,83 @@ int layer_of_centre(vec4 hit, float normal) {
     return map_project(maps_views.data[layer].view, hit.xyz, photon_normal(normal), xy01) ? layer : NO_MAP;
 }
 
-// The cell as a layer sees it: the centre's, or else that of any corner, and whether it is the centre's.
-bool cell_at(ivec2 texel, float normal, out Cell cell, out int layer) {
-    vec4 centre = hit_at(texel, 0), corner[4];
-    layer = layer_of_centre(centre, normal);
-    bool own = layer != NO_MAP;
+// Of a cell's corners, the ways that its photons went; 0 where there is none.
+uint corner_way[4][PHOTONS];
+
+ivec2 corner_place(ivec2 texel, int k) {
+    return texel + step_to(k);
+}
+
+Corner corner_landed(ivec2 texel, int k, int photon) {
+    vec4 hit = texelFetch(corners_hit, PHOTON_PLACE(corner_place(texel, k), photon), 0);
+    if (hit.w == 0.0) return Corner(vec2(0.0), 0u);
+    return landed_at(hit.xyz, corner_way[k][photon], layer_of(uint(hit.w) - 1u, push.light), push.side);
+}
+
+// What lies between a photon of the centre and those of the corners that went its way.
+Cell cell_about(ivec2 texel, Corner centre) {
+    Cell cell;
+    cell.centre = centre;
     for (int k = 0; k < 4; k++) {
-        corner[k] = texelFetch(corners_hit, texel + step_to(k), 0);
-        if (layer == NO_MAP && corner[k].w != 0.0) layer = layer_of(uint(corner[k].w) - 1u, push.light);
+        cell.corner[k] = Corner(vec2(0.0), 0u);
+        for (int photon = 0; photon < PHOTONS; photon++) {
+            if (corner_way[k][photon] == centre.way) cell.corner[k] = corner_landed(texel, k, photon);
+        }
     }
-    cell.centre = landed_at(centre.xyz, uint(texelFetch(photons_way, texel, 0).r), layer, push.side);
+    return cell;
+}
+
+// Whether light lands in the map at a corner by a way that no photon of the centre went.
+bool has_strays(ivec2 texel, uint way[PHOTONS]) {
     for (int k = 0; k < 4; k++) {
-        uint way = uint(texelFetch(corners_way, texel + step_to(k), 0).r);
-        cell.corner[k] = landed_at(corner[k].xyz, way, layer, push.side);
+        for (int photon = 0; photon < PHOTONS; photon++) {
+            bool known = corner_way[k][photon] == 0u;
+            for (int other = 0; other < PHOTONS; other++) known = known || corner_way[k][photon] == way[other];
+            if (known) continue;
+            Corner c = corner_landed(texel, k, photon);
+            if (c.way != 0u && !is_beside_map(vec4(c.at, c.at), push.side)) return true;
+        }
     }
-    return own;
+    return false;
 }
 
 void main() {
     ivec2 size = ivec2(photons_side()), texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, size))) return;
-    vec4 flux = flux_at(texel, 0);
-    Cell cell;
-    int layer;
-    bool own = cell_at(texel, flux.w, cell, layer), sheet = is_one_sheet(cell);
-    vec4 b = bounds(cell);
-    if (layer == NO_MAP || is_beside_map(b, push.side) || sheet && !own) return;
-    uint number = uint(texel.y * size.x + texel.x);
-    vec3 watts = photon_flux(flux.rgb);
+    uint way[PHOTONS], number = uint(texel.y * size.x + texel.x);
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        way[photon] = uint(texelFetch(photons_way, PHOTON_PLACE(texel, photon), 0).r);
+        for (int k = 0; k < 4; k++) {
+            corner_way[k][photon] = uint(texelFetch(corners_way, PHOTON_PLACE(corner_place(texel, k), photon), 0).r);
+        }
+    }
+    Cell cells[PHOTONS];
+    int layers[PHOTONS]; // that take them, or none
+    vec3 flux[PHOTONS];  // W
+    bool coarse = false;
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        vec4 hit = hit_at(texel, photon), stored = flux_at(texel, photon);
+        flux[photon] = photon_flux(stored.rgb);
+        layers[photon] = layer_of_centre(hit, stored.w);
+        if (layers[photon] == NO_MAP) continue;
+        Cell cell = cell_about(texel, landed_at(hit.xyz, way[photon], layers[photon], push.side));
+        vec4 b = bounds(cell);
+        if (is_beside_map(b, push.side)) layers[photon] = NO_MAP;
+        coarse = coarse || layers[photon] != NO_MAP && (!is_one_sheet(cell) || is_coarse(cell, b));
+        cells[photon] = cell;
+    }
 #ifdef REFINED
-    if (!sheet || is_coarse(cell, b)) {
+    if (coarse || has_strays(texel, way)) {
         cells_list.data[atomicAdd(cells_counts.data[2u * push.view], 1u)] = number;
         return;
     }
-#else
-    if (!sheet || is_torn(cell)) {
-        if (own && cell.centre.way != 0u) book(number, put_point(cell.centre.at, layer, watts, number));
-        return;
-    }
 #endif
-    book(number, spread_cell(cell, layer, watts));
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        if (layers[photon] == NO_MAP) continue;
+        Cell cell = cells[photon];
+        bool whole = is_one_sheet(cell) && !is_torn(cell);
+        if (cell.centre.way == 0u) continue;
+        book(number, whole ? spread_cell(cell, layers[photon], flux[photon])
+                           : put_point(cell.centre.at, layers[photon], flux[photon], number));
+    }
 }

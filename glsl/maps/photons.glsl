@@ -5,9 +5,11 @@
 #ifdef LAYERS
 #define PHOTON_SAMPLER sampler2DArray
 #define PHOTON_PLACE(texel, layer) ivec3(texel, layer)
+const int PHOTONS = LAYERS; // of a sample
 #else
 #define PHOTON_SAMPLER sampler2D
 #define PHOTON_PLACE(texel, layer) texel
+const int PHOTONS = 1;
 #endif
 
 layout(set = 0, binding = 8) uniform PHOTON_SAMPLER photons_hit;

@@ -39,7 +39,7 @@ struct Photon {
     uint receiver;  // object
     uint status;
     uint bent;      // times the geometric normal bent the ray in place of the interpolated one
-    uint chain;     // which specular objects it met, mixed into one number; not in class all:N
+    uint chain;     // which specular objects it met, in class all:N how it went on there, mixed into one number
 };
 
 // Nothing: what a sample leaves that meets no specular object.

@@ -14,7 +14,6 @@ use crate::{
         PlanError,
         light::{Column, Corners, SamplePush, TRACER, Tracing},
     },
-    scene::PathClass,
 };
 
 /// What a centre's photon must tell.
@@ -99,19 +98,10 @@ impl Cells {
     /// Adds what all views share.
     ///
     /// # Errors
-    /// Where a sample leaves several photons, or no buffer holds the map's sums.
+    /// What the tracer of corners cannot do.
     pub fn plan(job: &mut Job<'_>, axes: Axes<'_>, side: u32, views: BufferId) -> Result<Option<Self>, PlanError> {
         if axes.splat != "cells" {
             return Ok(None);
-        }
-        if matches!(job.bench.class, PathClass::All(_)) {
-            return Err(PlanError::Refused {
-                what: format!("maps.splat=cells in class {}", job.bench.class),
-                reason:
-                    "a sample then leaves several photons, and which of them neighbours those of the next is not known"
-                        .into(),
-                remedy: "set light.paths=reflect-1, transmit-1 or transmit-2, or maps.splat=fixed".into(),
-            });
         }
         let corners = Corners::plan(job.plan, job.bench, &[Column::Hit, Column::Way])?;
         let count = job.emissions.len();
@@ -149,7 +139,7 @@ impl Cells {
         let (side, diameter) = (self.side as i32, self.diameter);
         let push = CellsPush { side, diameter, light: emission.lamp, view: view as u32 };
         let groups = job.photons.side.div_ceil(GROUP);
-        let pass = self.give(fixed, job.plan.pass(&name_of("maps/cells")));
+        let pass = job.photons.define(self.give(fixed, job.plan.pass(&name_of("maps/cells"))));
         let pass =
             pass.with(job.photons.fetch(COLUMNS)).with(self.corners(emission.side)).read("maps_views", self.views);
         let pass = self.list.into_iter().fold(pass, |pass, list| pass.define("REFINED", 1).write("cells_list", list));

@@ -29,8 +29,8 @@ impl Corners {
         let emissions: Vec<_> = bench.emissions.iter().map(wider).collect();
         let views = plan.upload("light/corners.views", &emissions.iter().map(|e| e.view.data()).collect::<Vec<_>>());
         let sides = sides(&emissions);
-        let photons =
-            sides.iter().map(|side| Photons::single(plan, &sized(BASE, &sides, *side), *side, columns)).collect();
+        let each = |&side: &u32| Photons::beside(plan, bench, &sized(BASE, &sides, side), side, columns);
+        let photons = sides.iter().map(each).collect();
         let tracer = Tracer::plan(plan, &bench_of(bench, &emissions, views))?;
         Ok(Self { emissions, views, tracer, photons })
     }

@@ -1,6 +1,6 @@
 //! The photon buffer, and the dispatch that fills it from one view.
 
-use super::{Emission, LAYERS, Tracer, emission::sized};
+use super::{Bench, Emission, LAYERS, Tracer, emission::sized};
 use crate::{
     gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
     passes::scene::SceneBuffers,
@@ -62,9 +62,10 @@ pub struct Photons {
 }
 
 impl Photons {
-    /// Of `side` samples a side, one photon each, in float32.
-    pub(super) fn single(plan: &mut Plan, name: &str, side: u32, columns: &[Column]) -> Self {
-        Self { side, layers: None, half: None, columns: Vec::new() }.with_columns(plan, name, columns)
+    /// Of `side` samples a side, in float32, with as many layers as the photon buffer has.
+    pub(super) fn beside(plan: &mut Plan, bench: &Bench<'_>, name: &str, side: u32, columns: &[Column]) -> Self {
+        let layers = layers(bench.settings, bench.class);
+        Self { side, layers, half: None, columns: Vec::new() }.with_columns(plan, name, columns)
     }
 
     fn with_columns(mut self, plan: &mut Plan, name: &str, columns: &[Column]) -> Self {
@@ -118,6 +119,11 @@ impl Photons {
     }
 }
 
+/// Layers of photon buffers, where a sample can leave several photons.
+fn layers(settings: &Settings, class: PathClass) -> Option<u32> {
+    matches!(class, PathClass::All(_)).then(|| settings.whole(&LAYERS))
+}
+
 /// Adds the photon columns that `columns` names, once for all views of each of the `sides`; with layers where the class has
 /// several paths.
 ///
@@ -134,7 +140,7 @@ pub fn photon_buffer(
     /// Below 65504 by enough that nothing overflows; 2⁻¹⁴ is the least that keeps all bits.
     const BRIGHTEST: f64 = 14.0;
     let half = half.map(|most| if most > 0.0 { (BRIGHTEST - most.log2().ceil()).exp2() } else { 1.0 });
-    let layers = matches!(class, PathClass::All(_)).then(|| settings.whole(&LAYERS));
+    let layers = layers(settings, class);
     let each = |&side: &u32| {
         let photons = Photons { side, layers, half, columns: Vec::new() };
         photons.with_columns(plan, &sized("light/photons", sides, side), columns)
