@@ -9,6 +9,9 @@ int level_side(int n, int level) {
     return (n + (1 << level) - 1) >> level;
 }
 
+// Beside a texel's count of splats below it: the one is that texel's own.
+const uint OWN = 0x80000000u;
+
 // Where a texel of a level, from 1 on, lies in the pyramid over n x n photons. Levels begin at 2 a (1 - 2^-(level - 1)),
 // a the first one's side, and two rows each for sides that are rounded up.
 ivec2 pyramid_place(int n, int level, ivec2 at) {
@@ -20,8 +23,17 @@ ivec2 pyramid_place(int n, int level, ivec2 at) {
 #ifdef MERGE
 layout(set = 0, binding = 14) uniform sampler2DArray pyramid_hit;
 layout(set = 0, binding = 15) uniform sampler2DArray pyramid_flux;
+#elif defined(EXACT)
+layout(set = 0, binding = 14) uniform sampler2DArray pyramid_flux;
+layout(set = 0, binding = 15) uniform sampler2DArray pyramid_mean;
+layout(set = 0, binding = 16) uniform sampler2DArray pyramid_bounds;
+layout(set = 0, binding = 17) uniform sampler2DArray pyramid_lean;
 #elif defined(TRAVERSE)
 layout(set = 0, binding = 14) uniform sampler2DArray pyramid_valid;
+#endif
+
+#ifdef COUNTED
+layout(set = 0, binding = 18) uniform usampler2DArray pyramid_points;
 #endif
 
 ivec3 above(ivec2 at, int level, int layer) {

@@ -2,8 +2,7 @@
 #ifndef PHOTON_SPLAT_GLSL
 #define PHOTON_SPLAT_GLSL
 
-#include "maps/views.glsl"
-#include "shared/photon.glsl"
+#include "maps/landing.glsl"
 #include "shared/splat.glsl"
 
 layout(push_constant, scalar) uniform Push {
@@ -12,15 +11,6 @@ layout(push_constant, scalar) uniform Push {
     float threshold; // texels: the diameter beyond which a splat goes to a smaller level
     uint light;
 } push;
-
-// A photon in its map.
-struct Landed {
-    vec3 p;
-    vec3 n;
-    uint receiver;
-    vec2 xy01;
-    int map;
-};
 
 struct Splat {
     vec3 flux;      // W, already divided by the sum of the weights
@@ -33,14 +23,8 @@ struct Splat {
 
 const Splat NO_SPLAT = Splat(vec3(0.0), 0.0, vec2(0.0), 1.0, 0, 0);
 
-// From its columns. False if no map takes the photon, or there is none.
 bool land(vec4 hit, float normal, out Landed l) {
-    l = Landed(hit.xyz, vec3(0.0), 0u, vec2(0.0), -1);
-    if (hit.w == 0.0) return false;
-    l.n = photon_normal(normal);
-    l.receiver = uint(hit.w) - 1u;
-    l.map = map_layer(l.p, l.n, l.receiver, push.light, l.xy01);
-    return l.map >= 0;
+    return landing_of(hit, normal, push.light, l);
 }
 
 #ifdef VARYING

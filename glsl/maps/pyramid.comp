@@ -1,24 +1,28 @@
 #version 460
+#extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 // A level of the pyramid over the photons from the one below: with MERGE the mean of what is valid, as hardware makes mip
-// maps (receiver and normal are the first one's); else whether anything is.
+// maps (receiver and normal are the first one's); else whether anything is. With COUNTED also how many splats are below
+// each texel: one and OWN, where with CONVERGE its children converge, else those of its children.
 
 #define PYRAMID_WRITTEN
 #include "maps/levels.glsl"
+#include "maps/pyramid_step.glsl"
+#ifdef CONVERGE
+#include "maps/converge.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-layout(push_constant) uniform Push {
-    int side; // photons along a side
-    int level;
-} push;
 
 #ifdef MERGE
 layout(set = 0, binding = 14, rgba32f) uniform image2DArray pyramid_hit;
 layout(set = 0, binding = 15, rgba32f) uniform image2DArray pyramid_flux;
 #else
 layout(set = 0, binding = 14, r32f) uniform image2DArray pyramid_valid;
+#endif
+#ifdef COUNTED
+layout(set = 0, binding = 18, r32ui) uniform uimage2DArray pyramid_points;
 #endif
 
 ivec3 place(ivec2 at, int level, int layer) {
@@ -31,6 +35,13 @@ void main() {
     int below = push.level - 1;
     vec4 hit = vec4(0.0), flux = vec4(0.0);
     float count = 0.0;
+#ifdef COUNTED
+    uint points = 0u;
+#endif
+#ifdef CONVERGE
+    ivec3 common_texel = NO_TEXEL;
+    bool converges = true;
+#endif
     for (int k = 0; k < 4; k++) {
         ivec2 at = 2 * texel.xy + ivec2(k & 1, k >> 1);
         if (any(greaterThanEqual(at, ivec2(level_side(push.side, below))))) continue;
@@ -41,12 +52,25 @@ void main() {
 #else
         vec4 h = imageLoad(pyramid_valid, place(at, below, texel.z)).rrrr;
 #endif
+#ifdef CONVERGE
+        if (h.w == 0.0) converges = false;
+#endif
         if (h.w == 0.0) continue;
+#ifdef COUNTED
+#ifdef FROM_PHOTONS
+        points++;
+#else
+        points += imageLoad(pyramid_points, place(at, below, texel.z)).r & ~OWN;
+#endif
+#endif
 #ifdef MERGE
 #ifdef FROM_PHOTONS
         vec4 f = flux_at(at, texel.z);
 #else
         vec4 f = imageLoad(pyramid_flux, place(at, below, texel.z));
+#endif
+#ifdef CONVERGE
+        converges = converges && falls_into(h, f.w, push.light, push.map_side, common_texel);
 #endif
         if (count == 0.0) {
             hit.w = h.w;
@@ -58,6 +82,12 @@ void main() {
         count += 1.0;
     }
     ivec3 to = place(texel.xy, push.level, texel.z);
+#ifdef COUNTED
+#ifdef CONVERGE
+    if (converges && count > 0.0) points = OWN | 1u;
+#endif
+    imageStore(pyramid_points, to, uvec4(points));
+#endif
 #ifdef MERGE
     float share = count > 0.0 ? 1.0 / count : 0.0;
     imageStore(pyramid_hit, to, vec4(hit.xyz * share, hit.w));

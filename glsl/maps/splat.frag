@@ -10,14 +10,21 @@ layout(location = 1) flat in vec4 splat_centre; // texels of its level; the leve
 #ifdef COUNTED
 layout(location = 2) flat in float splat_count; // photons, divided by the sum of the weights
 #endif
+#ifdef SHAPED
+layout(location = 3) flat in vec2 splat_shape; // diameter along columns; rows that the centre moves by a column
+#endif
 layout(location = 0) out vec4 deposited;
 
 void main() {
 #ifdef MULTIRES
     if (any(greaterThan(gl_FragCoord.xy, splat_centre.zz))) discard; // beyond its level's corner
 #endif
-    float weight = splat_weight(gl_FragCoord.x, splat_centre.x, splat_flux.w) *
-                   splat_weight(gl_FragCoord.y, splat_centre.y, splat_flux.w);
+    vec2 centre = splat_centre.xy, diameter = splat_flux.ww;
+#ifdef SHAPED
+    centre.y += splat_shape.y * (gl_FragCoord.x - centre.x);
+    diameter.y = splat_shape.x;
+#endif
+    float weight = splat_weight(gl_FragCoord.x, centre.x, diameter.x) * splat_weight(gl_FragCoord.y, centre.y, diameter.y);
 #ifdef COUNTED
     deposited = vec4(weight * splat_flux.rgb, weight * splat_count);
 #else

@@ -11,8 +11,10 @@
 #include "maps/stream_point.glsl"
 #include "maps/traverse_step.glsl"
 #ifdef CONVERGE
-#include "maps/views.glsl"
-#include "shared/photon.glsl"
+#include "maps/converge.glsl"
+#endif
+#ifdef EXACT
+#include "maps/clusters.glsl"
 #endif
 
 layout(points) in;
@@ -29,7 +31,9 @@ void emit(StreamPoint p) {
 }
 
 bool is_valid(StreamPoint p) {
-#ifdef MERGE
+#ifdef EXACT
+    return texelFetch(pyramid_flux, above(p.texel, p.level, p.layer), 0).a != NOWHERE;
+#elif defined(MERGE)
     return hit_of(p.texel, p.level, p.layer).w != 0.0;
 #else
     return texelFetch(pyramid_valid, above(p.texel, p.level, p.layer), 0).r != 0.0;
@@ -43,23 +47,22 @@ bool child_of(StreamPoint p, int k, out ivec2 texel) {
 }
 
 #ifdef CONVERGE
-// Whether all children fall into one texel of one map. One that is invalid falls nowhere; but a valid one may be the mean of
-// few photons, which the factor 4^i then counts as all.
 bool converges(StreamPoint p) {
-    ivec3 common_texel = ivec3(-1);
+    ivec3 common_texel = NO_TEXEL;
     for (int k = 0; k < 4; k++) {
         ivec2 texel;
         if (!child_of(p, k, texel)) continue;
         vec4 hit = hit_of(texel, p.level - 1, p.layer);
-        if (hit.w == 0.0) return false;
-        vec2 xy01;
-        vec3 normal = photon_normal(flux_of(texel, p.level - 1, p.layer).w);
-        int map = map_layer(hit.xyz, normal, uint(hit.w) - 1u, push.light, xy01);
-        ivec3 place = ivec3(ivec2(floor(xy01 * float(push.map_side))), map);
-        if (map < 0 || (common_texel.z >= 0 && place != common_texel)) return false;
-        common_texel = place;
+        float normal = flux_of(texel, p.level - 1, p.layer).w;
+        if (!falls_into(hit, normal, push.light, push.map_side, common_texel)) return false;
     }
-    return common_texel.z >= 0;
+    return common_texel != NO_TEXEL;
+}
+#elif defined(EXACT)
+bool converges(StreamPoint p) {
+    ivec3 at = above(p.texel, p.level, p.layer);
+    float place = texelFetch(pyramid_flux, at, 0).a;
+    return is_one_splat(place, texelFetch(pyramid_bounds, at, 0), push.diameter, push.share);
 }
 #endif
 
@@ -72,7 +75,7 @@ void main() {
     }
 #endif
     if (!is_valid(p)) return;
-#ifdef CONVERGE
+#if defined(CONVERGE) || defined(EXACT)
     if (converges(p)) {
         p.ready = true;
         emit(p);

@@ -4,4 +4,6 @@ layout(push_constant) uniform Push {
     int top_side; // texels of the topmost level
     int map_side; // texels of the map
     uint light;
+    float diameter; // of splats, texels
+    float share;    // maps.spread
 } push;

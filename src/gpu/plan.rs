@@ -160,6 +160,27 @@ pub struct Stream {
     pub counter: BufferId,
 }
 
+/// Work groups of a dispatch along three axes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Groups {
+    /// So many.
+    Fixed([u32; 3]),
+    /// As many as the device has counted (an indirect dispatch).
+    Counted {
+        /// Rows of [`Self::WORDS`] words: groups along each axis, and the points that they share.
+        rows: BufferId,
+        /// Which of them.
+        row: u32,
+    },
+}
+
+impl Groups {
+    /// Words of a row.
+    pub const WORDS: usize = 4;
+    /// Bytes of a row.
+    pub const BYTES: u64 = 4 * Self::WORDS as u64;
+}
+
 /// What a pass runs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Work {
@@ -168,7 +189,7 @@ pub enum Work {
         /// The `.comp` file.
         shader: String,
         /// Work groups.
-        groups: [u32; 3],
+        groups: Groups,
         /// Invocations a work group.
         local: u32,
     },

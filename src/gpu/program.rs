@@ -14,7 +14,7 @@ use super::{
     error::{GpuError, Named},
     memory::{Buffer, Format, Image},
     pipeline::{Pipeline, RasterState, Stage},
-    plan::{BufferDecl, BufferId, ImageId, PassDecl, Phase, Plan, Work},
+    plan::{BufferDecl, BufferId, Groups, ImageId, PassDecl, Phase, Plan, Work},
     record::{self, buffer_barrier, image_barrier},
     shader::{ShaderKind, Sources},
     staging::Staging,
@@ -183,8 +183,9 @@ impl Program {
                 let mut counters = PassCounters { bytes: self.plan.bytes_written(pass), ..Default::default() };
                 match &pass.work {
                     Work::Compute { groups, local, .. } => {
-                        counters.invocations =
-                            Some(groups.iter().map(|&g| u64::from(g)).product::<u64>() * u64::from(*local));
+                        let (groups, points) = self.groups(groups)?;
+                        counters.invocations = Some(groups.map(u64::from).iter().product::<u64>() * u64::from(*local));
+                        counters.points = points;
                     }
                     Work::Copy { .. } => {}
                     Work::Raster { topology, .. } => {
@@ -199,6 +200,18 @@ impl Program {
                 Ok((pass.name.clone(), counters))
             })
             .collect()
+    }
+
+    /// Work groups of a dispatch, and the points that they took where the device counted them.
+    fn groups(&self, groups: &Groups) -> Result<([u32; 3], Option<u64>), GpuError> {
+        match *groups {
+            Groups::Fixed(groups) => Ok((groups, None)),
+            Groups::Counted { rows, row } => {
+                let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read_buffer(rows)?);
+                let first = row as usize * Groups::WORDS;
+                Ok(([words[first], words[first + 1], words[first + 2]], Some(u64::from(words[first + 3]))))
+            }
+        }
     }
 
     fn execute(&mut self, phase: Phase, updates: &[(BufferId, &[u8])], counting: bool) -> Result<FrameTimes, GpuError> {
@@ -273,6 +286,7 @@ impl Program {
                     [a as f32, b as f32, f32::from_bits(u), f32::from_bits(v)]
                 })
                 .collect(),
+            Format::R32u => memory.chunks_exact(4).map(|b| word(b) as f32).collect(),
             Format::Rgba16f => {
                 memory.chunks_exact(2).map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()).collect()
             }

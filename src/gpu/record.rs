@@ -8,7 +8,7 @@ use super::{
     device::Shared,
     memory::{Buffer, Image},
     pipeline::{Pipeline, descriptor_type},
-    plan::{BufferId, ImageId, PassDecl, Resource, Stream, Work},
+    plan::{BufferId, Groups, ImageId, PassDecl, Resource, Stream, Work},
     program::Program,
     reflect::BindingKind,
     timer::Timer,
@@ -112,7 +112,11 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
             bind(program, pass, pipeline);
         }
         match &pass.work {
-            Work::Compute { groups, .. } => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+            Work::Compute { groups: Groups::Fixed([x, y, z]), .. } => device.cmd_dispatch(commands, *x, *y, *z),
+            Work::Compute { groups: Groups::Counted { rows, row }, .. } => {
+                let rows = program.buffers[rows.0].handle;
+                device.cmd_dispatch_indirect(commands, rows, u64::from(*row) * Groups::BYTES);
+            }
             Work::Copy { copies } => copies.iter().for_each(|&copied| copy(program, copied)),
             Work::Raster { .. } => draw(program, pass),
         }
@@ -172,6 +176,9 @@ fn resource_barriers(program: &Program, pass: &PassDecl) {
         }
     }
     pass.attributes.iter().for_each(|(b, _)| buffer(b.0, Access::VertexAttributes));
+    if let Work::Compute { groups: Groups::Counted { rows, .. }, .. } = &pass.work {
+        buffer(rows.0, Access::Indirect);
+    }
     if let Work::Copy { copies } = &pass.work {
         for (from, to) in copies {
             image(from.0, Access::CopyRead);

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::{Cell, Report, Table, provenance::in_force, render_report::method_name};
 use crate::{
-    gpu::{BufferDecl, ImageDecl, Lifetime, PassDecl, Phase, Plan, Work},
+    gpu::{BufferDecl, Groups, ImageDecl, Lifetime, PassDecl, Phase, Plan, Work},
     renderer::Job,
 };
 
@@ -94,7 +94,11 @@ impl PassRow {
         };
         let (kind, shaders, extent, local, draws) = match &pass.work {
             Work::Compute { shader, groups, local } => {
-                ("compute", std::slice::from_ref(shader), *groups, *local, [].as_slice())
+                let (kind, groups) = match groups {
+                    Groups::Fixed(groups) => ("compute", *groups),
+                    Groups::Counted { .. } => ("counted", [0; 3]),
+                };
+                (kind, std::slice::from_ref(shader), groups, *local, [].as_slice())
             }
             Work::Copy { copies } => {
                 let [width, height] = copies.first().map_or([0, 0], |(from, _)| plan.image_extent(*from));
@@ -124,6 +128,7 @@ impl PassRow {
         let [x, y, z] = self.extent;
         match (self.kind, self.draws) {
             ("compute", _) => format!("{x}x{y}x{z} groups of {}", self.local),
+            ("counted", _) => format!("as many groups of {} as are counted", self.local),
             ("copy", _) => format!("{x}x{y} to buffers"),
             ("stream", _) => format!("{x}x{y}, 1 draw of the stream"),
             (_, 1) => format!("{x}x{y}, 1 draw of {} vertices", self.vertices),

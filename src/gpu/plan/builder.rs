@@ -1,7 +1,8 @@
 //! A pass as one sentence, from [`Plan::pass`] to a dispatch, a copy or draws.
 
 use super::{
-    Binding, Blend, BufferId, Depth, Draw, ImageId, PassDecl, Phase, Plan, Resource, Stream, Target, Topology, Work,
+    Binding, Blend, BufferId, Depth, Draw, Groups, ImageId, PassDecl, Phase, Plan, Resource, Stream, Target, Topology,
+    Work,
 };
 use crate::gpu::{access::Access, memory::Format};
 
@@ -12,7 +13,7 @@ impl Plan {
             pass: PassDecl {
                 name: name.to_owned(),
                 phase: Phase::Frame,
-                work: Work::Compute { shader: String::new(), groups: [0; 3], local: 64 },
+                work: Work::Compute { shader: String::new(), groups: Groups::Fixed([0; 3]), local: 64 },
                 bindings: Vec::new(),
                 attributes: Vec::new(),
                 push: Vec::new(),
@@ -137,7 +138,17 @@ impl PassBuilder<'_> {
     }
 
     /// Ends the sentence with a dispatch of work groups of `local` invocations.
-    pub fn dispatch(mut self, shader: &str, groups: [u32; 3], local: u32) {
+    pub fn dispatch(self, shader: &str, groups: [u32; 3], local: u32) {
+        self.compute(shader, Groups::Fixed(groups), local);
+    }
+
+    /// Ends the sentence with a dispatch of as many work groups as a pass before wrote to a row of `rows`
+    /// ([`Groups::Counted`]).
+    pub fn dispatch_counted(self, shader: &str, rows: BufferId, row: u32, local: u32) {
+        self.compute(shader, Groups::Counted { rows, row }, local);
+    }
+
+    fn compute(mut self, shader: &str, groups: Groups, local: u32) {
         for binding in &mut self.pass.bindings {
             binding.access = match binding.access {
                 Access::GraphicsRead => Access::ComputeRead,

@@ -18,8 +18,9 @@ pub static GATHER: Choice = Choice {
         "varying-multires",
         "varying-single",
         "cells",
+        "combine-exact",
     ],
-    doc: "a column of the paper's Table 3, or our cells, which set the four axes below; own: as the axes say",
+    doc: "a column of the paper's Table 3, or our cells or combine-exact, which set the four axes below; own: as the axes say",
 };
 
 pub static TRAVERSE: Choice = Choice {
@@ -34,9 +35,10 @@ pub static TRAVERSE: Choice = Choice {
 pub static MERGE: Choice = Choice {
     key: "maps.merge",
     default: "none",
-    words: &["none", "last", "all"],
-    doc: "with hierarchical, whether four photons that fall into one texel become one of 4^i times the flux (section 3.2): \
-          none; last: tested at the last level; all: at every level",
+    words: &["none", "last", "all", "exact"],
+    doc: "with hierarchical or compute, whether photons that fall together are splatted as one: none; four that fall into one \
+          texel become one of 4^i times the flux (section 3.2), last: tested at the last level; all: at every level; ours: \
+          exact: as many as lie within maps.spread, with their flux, mean place and spread",
 };
 
 pub static SPLAT: Choice = Choice {
@@ -67,7 +69,7 @@ pub struct Axes<'s> {
 
 /// The columns of Table 3, and ours. What its varying splats ran behind the paper does not say; its times are about twice those of
 /// combine-all, as its text says.
-const PRESETS: [(&str, [&str; 4]); 8] = [
+const PRESETS: [(&str, [&str; 4]); 9] = [
     ("copy", ["copy", "none", "fixed", "single"]),
     ("fetch", ["fetch", "none", "fixed", "single"]),
     ("hierarchical", ["hierarchical", "none", "fixed", "single"]),
@@ -76,6 +78,7 @@ const PRESETS: [(&str, [&str; 4]); 8] = [
     ("varying-multires", ["hierarchical", "all", "varying", "multires"]),
     ("varying-single", ["hierarchical", "all", "varying", "single"]),
     ("cells", ["compute", "none", "cells", "single"]),
+    ("combine-exact", ["compute", "exact", "fixed", "single"]),
 ];
 
 const KEYS: [&Choice; 4] = [&TRAVERSE, &MERGE, &SPLAT, &TARGET];
@@ -104,9 +107,19 @@ impl<'s> Axes<'s> {
             }
         }
         match axes {
-            Self { traverse, merge, .. } if merge != "none" && traverse != "hierarchical" => {
+            Self { traverse: traverse @ ("copy" | "fetch"), merge, .. } if merge != "none" => {
                 let what = format!("maps.merge={merge} with maps.traverse={traverse}");
-                refused(what, "only a hierarchy knows which photons lie together", "set maps.traverse=hierarchical")
+                let remedy = "set maps.traverse=compute or hierarchical";
+                refused(what, "only a hierarchy knows which photons lie together", remedy)
+            }
+            Self { splat, merge: "exact", .. } if splat != "fixed" => refused(
+                format!("maps.merge=exact with maps.splat={splat}"),
+                "a cluster's splat is a fixed one, made longer and wider by where its own photons lie",
+                "set maps.splat=fixed",
+            ),
+            Self { splat: "cells", merge, .. } if merge != "none" => {
+                let what = format!("maps.splat=cells with maps.merge={merge}");
+                refused(what, "cells are no points that could fall together", "set maps.merge=none")
             }
             Self { traverse: "copy", splat: splat @ ("varying" | "thin-lens"), .. } => refused(
                 format!("maps.splat={splat} with maps.traverse=copy"),
@@ -182,9 +195,11 @@ mod tests {
 
     #[test]
     fn what_has_no_meaning_is_refused_with_the_reason() {
-        let refused: [&[(&str, &str)]; 9] = [
+        let refused: [&[(&str, &str)]; 11] = [
             &[("maps.gather", "fetch"), ("maps.traverse", "hierarchical")],
-            &[("maps.merge", "last")],
+            &[("maps.merge", "last"), ("maps.traverse", "fetch")],
+            &[("maps.merge", "exact"), ("maps.splat", "varying")],
+            &[("maps.merge", "all"), ("maps.splat", "cells")],
             &[("maps.traverse", "copy"), ("maps.splat", "varying")],
             &[("maps.target", "multires")],
             &[("maps.target", "multires"), ("maps.splat", "interpolated"), ("maps.traverse", "fetch")],

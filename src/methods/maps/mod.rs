@@ -6,6 +6,8 @@ mod axes;
 mod cells;
 mod copied;
 mod hierarchy;
+mod points;
+mod pyramid;
 mod sparse;
 mod splats;
 mod sums;
@@ -15,6 +17,7 @@ use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
 use cells::Cells;
 use copied::{COPY, Vertices};
 use hierarchy::Hierarchy;
+use points::Points;
 use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
 use sums::Fixed;
 
@@ -26,7 +29,7 @@ use crate::{
         eye::SurfaceProvider,
         light::{Column, Photons},
     },
-    settings::{Choice, Setting, Settings, Whole},
+    settings::{Choice, Real, Setting, Settings, Whole},
 };
 
 /// Texels along each side of the caustic map.
@@ -51,7 +54,17 @@ static TOP: Whole = Whole {
     unit: "texels",
     default: 16,
     range: 1..=1024,
-    doc: "with maps.traverse = hierarchical, texels along a side of the level that it starts from, at most",
+    doc: "with maps.traverse = hierarchical, or compute where photons merge, texels along a side of the level that it starts \
+          from, at most",
+};
+
+static SPREAD: Real = Real {
+    key: "maps.spread",
+    unit: "",
+    default: Some(1.0),
+    range: 0.0..=8.0,
+    doc: "with maps.merge = exact, how far photons of a cluster may land from each other, along rows or columns of the map, in \
+          standard deviations of a splat (a quarter of maps.splat_size)",
 };
 
 static CULL: Choice = Choice {
@@ -80,6 +93,7 @@ static SETTINGS: &[Setting] = &[
     Setting::Real(&LEVEL_THRESHOLD),
     Setting::Choice(&LEVEL),
     Setting::Whole(&TOP),
+    Setting::Real(&SPREAD),
     Setting::Choice(&CULL),
     Setting::Choice(&COPY),
     Setting::Choice(&RECEIVERS),
@@ -115,6 +129,7 @@ static CHAIN: &[Link] = &[
             "maps.level_threshold",
             "maps.level",
             "maps.top",
+            "maps.spread",
             "maps.cull",
             "maps.copy",
             "maps.receivers",
@@ -200,8 +215,9 @@ impl Method for Maps {
             maps: splats.maps().iter().map(&mut map).collect(),
             views,
             cells,
-            fixed,
             vertices: Vertices::plan(job),
+            points: Points::plan(job, axes, &fixed)?,
+            fixed,
             hierarchies: Hierarchy::plan(job, axes),
             culls: culls(job.settings, axes),
             drawn: false,
@@ -224,6 +240,8 @@ struct PlannedMaps {
     vertices: Option<Vertices>,
     /// One for each size of view, where photons are traversed so.
     hierarchies: Vec<Hierarchy>,
+    /// The same, where a dispatch merges them.
+    points: Vec<Points>,
     culls: bool,
     drawn: bool,
 }
@@ -234,7 +252,7 @@ impl PlannedMaps {
     }
 
     fn hierarchy(&self, photons: &Photons) -> Option<&Hierarchy> {
-        self.hierarchies.iter().find(|hierarchy| hierarchy.side == photons.side)
+        self.hierarchies.iter().find(|hierarchy| hierarchy.pyramid.side == photons.side)
     }
 
     /// Ends a pass over the photons of a view with points.
@@ -278,7 +296,11 @@ impl Planned for PlannedMaps {
         }
         let light = job.emissions[view].lamp;
         if let Some(hierarchy) = self.hierarchy(job.photons) {
-            hierarchy.traverse(job, light, (self.splats.side, self.views), name_of);
+            hierarchy.traverse(job, light, self.views, name_of);
+        }
+        let points = self.points.iter().find(|points| points.pyramid.side == job.photons.side);
+        if let Some(points) = points {
+            points.count(job, view, self.views, name_of);
         }
         let first = !std::mem::replace(&mut self.drawn, true);
         for (at, &map) in self.maps.iter().enumerate() {
@@ -291,7 +313,11 @@ impl Planned for PlannedMaps {
                 self.draw(photons, pass.target_layers(map, first.then_some([0.0; 4]), Blend::Add));
                 continue;
             };
-            fixed.gather(pass.with(photons.fetch(self.splats.columns())), [photons.side, photons.layers()]);
+            let pass = pass.with(photons.fetch(self.splats.columns()));
+            match points {
+                Some(points) => points.gather(fixed, pass, view),
+                None => fixed.gather(pass, [photons.side, photons.layers()]),
+            }
             if view + 1 == job.emissions.len() {
                 fixed.resolve(job, map, self.splats.side);
             }
