@@ -14,6 +14,7 @@ layout(push_constant, scalar) uniform Push {
     float diameter; // of a point's splat, texels
     uint light;
     uint view;
+    ivec2 size;     // cells
 } push;
 
 #include "maps/cells.glsl"
@@ -67,15 +68,15 @@ bool cell_at(ivec2 texel, float normal, out Cell cell, out int layer) {
 }
 
 void main() {
-    ivec2 size = ivec2(photons_side()), texel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(texel, size))) return;
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(texel, push.size))) return;
     vec4 flux = flux_at(texel, 0);
     Cell cell;
     int layer;
     bool own = cell_at(texel, flux.w, cell, layer), sheet = is_one_sheet(cell);
     vec4 b = bounds(cell);
     if (layer == NO_MAP || is_beside_map(b, push.side) || sheet && !own) return;
-    uint number = uint(texel.y * size.x + texel.x);
+    uint number = uint(texel.y * push.size.x + texel.x);
     vec3 watts = photon_flux(flux.rgb);
 #ifdef REFINED
     if (!sheet || is_coarse(cell, b)) {

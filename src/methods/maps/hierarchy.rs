@@ -56,7 +56,7 @@ impl Hierarchy {
         if !axes.streams() {
             return Vec::new();
         }
-        let sides = light::sides(job.emissions);
+        let sides = light::sides(job.emissions, |e| e.side);
         let all: Vec<Self> = sides.iter().filter_map(|&side| Self::of(job, axes, &sides, side)).collect();
         if all.is_empty() {
             let side = job.photons.side;

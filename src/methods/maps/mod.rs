@@ -118,6 +118,7 @@ static CHAIN: &[Link] = &[
             "maps.cull",
             "maps.copy",
             "maps.receivers",
+            "light.tile",
             "eye.samples",
         ],
     },
