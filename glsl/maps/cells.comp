@@ -14,6 +14,7 @@ layout(push_constant, scalar) uniform Push {
     float diameter; // of a point's splat, texels
     uint light;
     uint view;
+    ivec2 size;     // cells
 } push;
 
 #include "maps/cells.glsl"
@@ -90,7 +91,7 @@ bool has_strays(ivec2 texel, uint way[PHOTONS]) {
 }
 
 void main() {
-    ivec2 size = ivec2(photons_side()), texel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = push.size, texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, size))) return;
     uint way[PHOTONS], number = uint(texel.y * size.x + texel.x);
     for (int photon = 0; photon < PHOTONS; photon++) {
