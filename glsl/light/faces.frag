@@ -44,7 +44,7 @@ bool fragment_hit(vec3 o, vec3 d, out Hit hit) {
 void main() {
     View v = raster_view();
     vec3 o, d;
-    view_ray(v, gl_FragCoord.xy / vec2(push.size), o, d);
+    raster_ray(gl_FragCoord.xy, o, d);
 #ifdef BACK
     // From behind, the nearest crossing is the last.
     vec3 from = o + d * ((v.far - v.near) / dot(d, v.forward)), along = -d;

@@ -4,7 +4,10 @@
 #define INSIDE_GLSL
 
 #include "light/back.glsl"
-#include "light/front.glsl"
+
+// The front that the whole view sees: light that entered in one tile may meet it in another.
+layout(set = 0, binding = 25) uniform sampler2D light_whole_front_position;
+layout(set = 0, binding = 26) uniform sampler2D light_whole_front_normal;
 
 const int INSIDE_STEPS = 64;
 const int INSIDE_HALVINGS = 16;
@@ -15,7 +18,7 @@ bool is_inside(vec3 p, inout Face crossed) {
     vec2 xy01;
     bool has_back = back_beneath(p, back);
     bool has_front = view_project(light_views.data[push.view], p, xy01) &&
-                     face_beneath(light_front_position, light_front_normal, xy01, front);
+                     face_beneath(light_whole_front_position, light_whole_front_normal, xy01, front);
     if (has_back && beyond_face(p, back) >= 0.0) {
         crossed = back;
         return false;

@@ -63,12 +63,17 @@ void end_photon(Photon p) {
 #endif
 
 void main() {
+    // What is stored beyond the image is dropped; a tile that reaches beyond its view holds nothing there.
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(texel, push.size))) return;
+    bool emits = all(lessThan(texel, push.size));
 #ifdef LAYERS
-    trace_tree(light_sample(texel));
+    if (emits) trace_tree(light_sample(texel));
     for (int layer = layers_filled; layer < LAYERS; layer++) store_photon(ivec3(texel, layer), no_photon());
 #else
-    store_photon(texel, trace_photon(light_sample(texel)));
+    if (emits) {
+        store_photon(texel, trace_photon(light_sample(texel)));
+    } else {
+        store_photon(texel, no_photon());
+    }
 #endif
 }

@@ -9,9 +9,11 @@
 layout(set = 0, binding = 7, scalar) readonly buffer LightViews { View data[]; } light_views;
 
 layout(push_constant, scalar) uniform Push {
-    ivec2 size; // texels of the view
+    ivec2 size; // samples of the photon image that lie in the view: of a tile at its end fewer than the image has
     uint light;
     uint view;
+    ivec2 first; // the view's sample that is the image's first
+    int whole;   // samples a side of the view
 #ifdef PUSH_MORE
     PUSH_MORE
 #endif
@@ -27,16 +29,22 @@ LightSample light_sample_at(vec2 xy01, float footprint) {
     return s;
 }
 
-// Of a texel, where the view has so many.
-LightSample light_sample(ivec2 texel, ivec2 size) {
+// Where a place of the image, in texels that are each cut into so many a side, lies in the view.
+vec2 place_in_view(vec2 at, int finer) {
+    return (vec2(finer * push.first) + at) / float(finer * push.whole);
+}
+
+// Of a texel of the image, each cut into so many a side. The same of a view and of its tiles, bit by bit.
+LightSample light_sample(ivec2 texel, int finer) {
     View v = light_views.data[push.view];
+    ivec2 size = ivec2(finer * push.whole), at = finer * push.first + texel;
     float footprint =
-        v.perspective != 0u ? view_texel_solid_angle(v, size, texel) : view_texel_cross_section(v, size);
-    return light_sample_at((vec2(texel) + 0.5) / vec2(size), footprint);
+        v.perspective != 0u ? view_texel_solid_angle(v, size, at) : view_texel_cross_section(v, size);
+    return light_sample_at((vec2(at) + 0.5) / vec2(size), footprint);
 }
 
 LightSample light_sample(ivec2 texel) {
-    return light_sample(texel, push.size);
+    return light_sample(texel, 1);
 }
 
 #endif

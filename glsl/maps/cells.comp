@@ -14,6 +14,7 @@ layout(push_constant, scalar) uniform Push {
     float diameter; // of a point's splat, texels
     uint light;
     uint view;
+    ivec2 size;     // cells
 } push;
 
 #include "maps/cells.glsl"
@@ -90,9 +91,9 @@ bool has_strays(ivec2 texel, uint way[PHOTONS]) {
 }
 
 void main() {
-    ivec2 size = ivec2(photons_side()), texel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(texel, size))) return;
-    uint way[PHOTONS], number = uint(texel.y * size.x + texel.x);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(texel, push.size))) return;
+    uint way[PHOTONS], number = uint(texel.y * push.size.x + texel.x);
     for (int photon = 0; photon < PHOTONS; photon++) {
         way[photon] = uint(texelFetch(photons_way, PHOTON_PLACE(texel, photon), 0).r);
         for (int k = 0; k < 4; k++) {

@@ -60,9 +60,8 @@ void end_photon(Photon p) {
 
 // A corner of the smaller cells, or a centre, counted from the view's first.
 Sample sample_at(ivec2 at, bool centre) {
-    ivec2 size = FINER * push.size;
-    LightSample light = light_sample(min(at, size - 1), size);
-    if (!centre) light = light_sample_at(vec2(at) / vec2(size), light.footprint);
+    LightSample light = light_sample(min(at, FINER * push.size - 1), FINER);
+    if (!centre) light = light_sample_at(place_in_view(vec2(at), FINER), light.footprint);
 #ifdef LAYERS
     layers_filled = 0;
     for (int k = 0; k < PHOTONS; k++) traced.photon[k].landed.way = 0u;

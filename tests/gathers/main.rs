@@ -6,6 +6,7 @@ mod common;
 mod hard;
 mod levels;
 mod model;
+mod tiles;
 mod varying;
 
 use common::{

@@ -56,6 +56,14 @@ pub struct Cells {
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct CellsPush {
+    map: LargePush,
+    size: [i32; 2],
+}
+
+/// Push constants of `glsl/maps/cells_large.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct LargePush {
     side: i32,
     diameter: f32,
     light: u32,
@@ -116,8 +124,8 @@ impl Cells {
                 "the tracer's images show no more than the centres of their texels: cells cut by an edge go as points",
             );
         }
-        let each = |side: u32| u64::from(side).pow(2) + u64::from(side + 1).pow(2);
-        let samples = job.emissions.iter().map(|emission| each(emission.side)).sum();
+        let each = |[x, y]: [u32; 2]| u64::from(x) * u64::from(y) + u64::from(x + 1) * u64::from(y + 1);
+        let samples = job.emissions.iter().map(|emission| each(emission.held())).sum();
         let buffer = job.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);
         let diameter = job.settings.whole(&SPLAT_SIZE) as f32;
         Ok(Some(Self {
@@ -137,7 +145,8 @@ impl Cells {
         self.corners.trace(job.plan, job.bench, view);
         let emission = &job.emissions[view];
         let (side, diameter) = (self.side as i32, self.diameter);
-        let push = CellsPush { side, diameter, light: emission.lamp, view: view as u32 };
+        let map = LargePush { side, diameter, light: emission.lamp, view: view as u32 };
+        let push = CellsPush { map, size: emission.held().map(|n| n as i32) };
         let groups = job.photons.side.div_ceil(GROUP);
         let pass = job.photons.define(self.give(fixed, job.plan.pass(&name_of("maps/cells"))));
         let pass =
@@ -148,7 +157,7 @@ impl Cells {
             self.refine(job, fixed, list, view, &name_of("maps/cells.refine"));
         }
         let pass = self.give(fixed, job.plan.pass(&name_of("maps/cells.large")));
-        pass.push(&push).dispatch("maps/cells_large.comp", [GROUPS, 1, 1], GROUP * GROUP);
+        pass.push(&map).dispatch("maps/cells_large.comp", [GROUPS, 1, 1], GROUP * GROUP);
     }
 
     fn refine(&self, job: &mut Job<'_>, fixed: &Fixed, list: BufferId, view: usize, name: &str) {

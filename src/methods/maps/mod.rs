@@ -133,6 +133,7 @@ static CHAIN: &[Link] = &[
             "maps.cull",
             "maps.copy",
             "maps.receivers",
+            "light.tile",
             "eye.samples",
         ],
     },

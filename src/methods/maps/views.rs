@@ -32,8 +32,8 @@ pub struct MapView {
 pub fn receiving(job: &Job<'_>, side: u32, diameter: u32) -> Vec<MapView> {
     if job.settings.choice(&light::VIEW) == "shared" {
         let of = |e: &Emission| MapView { view: e.view.data(), receiver: ANY, light: e.lamp };
-        // Bands that are traced apart share their light's layer.
-        return job.emissions.iter().filter(|e| matches!(e.band, None | Some(0))).map(of).collect();
+        // Bands and tiles that are traced apart share their light's layer.
+        return job.emissions.iter().filter(|e| e.begins_view()).map(of).collect();
     }
     let full = (0.5 * f64::from(diameter) + 1.0).min(0.25 * f64::from(side));
     let of = |Receiver { patch, beyond }: &Receiver| {

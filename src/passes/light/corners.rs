@@ -25,7 +25,8 @@ pub struct Corners {
 impl Corners {
     /// Adds the buffers that all views share, and what the tracer needs.
     pub fn plan(plan: &mut Plan, bench: &Bench<'_>, columns: &[Column]) -> Result<Self, PlanError> {
-        let wider = |e: &Emission| Emission { view: wider(e.view, e.side), side: e.side + 1, ..*e };
+        let wider =
+            |e: &Emission| Emission { view: wider(e.view, e.whole), side: e.side + 1, whole: e.whole + 1, ..*e };
         let emissions: Vec<_> = bench.emissions.iter().map(wider).collect();
         let views = plan.upload("light/corners.views", &emissions.iter().map(|e| e.view.data()).collect::<Vec<_>>());
         let sides = sides(&emissions);

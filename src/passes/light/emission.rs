@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{AREA_SAMPLES, SIDE, VIEW};
+use super::{AREA_SAMPLES, SIDE, TILE, VIEW};
 use crate::{
     passes::{PlanError, extents},
     scene::{Beam, Face, LightKind, Region, Scene},
@@ -10,7 +10,13 @@ use crate::{
     view::{Extent, View},
 };
 
-/// A view that a light emits from.
+/// Views that a frame has at most: each is some passes, and a tile of one photon would make millions.
+const MOST_VIEWS: u32 = 4096;
+
+/// Tiles' sides are multiples of it, where they may be so large.
+const ROUND: u32 = 256;
+
+/// A view that a light emits from, or a tile of one that has more photons than the photon buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct Emission {
     /// The light.
@@ -24,8 +30,12 @@ pub struct Emission {
     pub view: View,
     /// The band it sends, where the scene bends bands apart; else all.
     pub band: Option<usize>,
-    /// Photons a side.
+    /// Photons a side, at most: what does not lie in the view is not emitted.
     pub side: u32,
+    /// Photons a side of the whole view.
+    pub whole: u32,
+    /// The whole view's photon that is the first.
+    pub first: [u32; 2],
     /// W/m² on a plane that faces it, or W/sr: of its brightest band, in its brightest direction.
     pub(super) brightest: f64,
 }
@@ -34,9 +44,28 @@ impl Emission {
     /// At most what a photon of the view carries, W: the widest texel's footprint in the light's brightest band and
     /// direction.
     pub fn most(&self) -> f64 {
-        let window = (self.view.high - self.view.low).abs() / f64::from(self.side);
+        let window = (self.view.high - self.view.low).abs() / f64::from(self.whole);
         self.brightest * window.x * window.y
     }
+
+    /// Photons along both sides that lie in the view: a tile may reach beyond it.
+    pub fn held(&self) -> [u32; 2] {
+        self.first.map(|first| self.side.min(self.whole - first))
+    }
+
+    /// Whether it is the first of its view's tiles and bands.
+    pub fn begins_view(&self) -> bool {
+        self.first == [0, 0] && matches!(self.band, None | Some(0))
+    }
+}
+
+/// Photons a side of the tiles of a view that has `whole`, and where each begins: as few as hold no more than `most` a
+/// side, of even sides; those of many photons have whole texels in every level of a pyramid over them.
+fn tiles(whole: u32, most: u32) -> (u32, impl Iterator<Item = [u32; 2]>) {
+    let count = whole.div_ceil(most);
+    let even = whole.div_ceil(count);
+    let side = if count > 1 { even.next_multiple_of(ROUND).min(most) } else { even };
+    (side, (0..count * count).map(move |at| [at % count * side, at / count * side]))
 }
 
 /// Photons a side of each of `count` views that share the photons of one.
@@ -46,7 +75,12 @@ fn shared_side(side: u32, count: u32) -> u32 {
 
 /// Photons a side that there are, the most first: views of one size share a photon buffer.
 pub fn sides(emissions: &[Emission]) -> Vec<u32> {
-    let mut sides: Vec<u32> = emissions.iter().map(|emission| emission.side).collect();
+    distinct(emissions.iter().map(|emission| emission.side))
+}
+
+/// Sides, the greatest first, each once.
+pub(super) fn distinct(sides: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut sides: Vec<u32> = sides.collect();
     sides.sort_unstable_by(|a, b| b.cmp(a));
     sides.dedup();
     sides
@@ -61,7 +95,8 @@ pub fn sized(name: &str, sides: &[u32], side: u32) -> String {
 /// light that reaches nothing now keeps its views, which then see nothing: it may reach something at another time.
 ///
 /// Of a light with a size so many points emit as `light.area_samples` says, each by views of its own with its share of the
-/// light's photons.
+/// light's photons. A view of more photons than `light.tile` a side is as many as it has tiles, whose bands follow each
+/// other.
 pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Result<Vec<Emission>, PlanError> {
     let specular = extents::specular(scene);
     if specular.is_empty() {
@@ -73,12 +108,12 @@ pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Resul
         content.join(&extents::of_region(receiver));
     }
     let field = Field { scene, shared, content, everything: extents::everything(scene) };
-    let (side, count) = (settings.whole(&SIDE), settings.whole(&AREA_SAMPLES));
+    let (side, count, tile) = (settings.whole(&SIDE), settings.whole(&AREA_SAMPLES), settings.whole(&TILE));
     let plain = scene.lights.iter().filter(|light| !light.kind.has_area()).count() as u32;
     let [mut next, mut next_of_area] = [0, plain];
     let mut all = Vec::new();
     for (light, lamp) in scene.lights.iter().enumerate() {
-        let (next, side) = match lamp.kind.has_area() {
+        let (next, whole) = match lamp.kind.has_area() {
             true => (&mut next_of_area, shared_side(side, count)),
             false => (&mut next, side),
         };
@@ -86,8 +121,24 @@ pub fn emissions(scene: &Scene, settings: &Settings, receiver: &Region) -> Resul
             let brightest = source.power().into_iter().fold(0.0, f64::max);
             let bands: &[Option<usize>] = if scene.is_dispersive() { &[Some(0), Some(1), Some(2)] } else { &[None] };
             for view in field.views(&source, &lamp.name)? {
-                let (lamp, position) = (*next, source.position());
-                all.extend(bands.iter().map(|&band| Emission { light, lamp, position, view, band, side, brightest }));
+                let (lamp, position, (side, tiles)) = (*next, source.position(), tiles(whole, tile));
+                let of = |first| {
+                    bands.iter().map(move |&band| Emission {
+                        light,
+                        lamp,
+                        position,
+                        view,
+                        band,
+                        side,
+                        whole,
+                        first,
+                        brightest,
+                    })
+                };
+                if all.len() as u64 + u64::from(whole.div_ceil(side)).pow(2) > u64::from(MOST_VIEWS) {
+                    return Err(too_many(whole, tile));
+                }
+                all.extend(tiles.flat_map(of));
             }
             *next += 1;
         }
@@ -139,6 +190,14 @@ impl Field<'_> {
     }
 }
 
+fn too_many(whole: u32, tile: u32) -> PlanError {
+    PlanError::Refused {
+        what: format!("light.tile={tile} with views of {whole} photons a side"),
+        reason: format!("the lights then have more than {MOST_VIEWS} views and tiles"),
+        remedy: "raise light.tile, or lower light.side or light.area_samples".into(),
+    }
+}
+
 fn no_one_frustum(light: &str) -> PlanError {
     PlanError::Refused {
         what: format!("light.view=shared with the light '{light}'"),
@@ -169,4 +228,24 @@ pub fn view_name(base: &str, scene: &Scene, all: &[Emission], index: usize) -> S
     let number = if alike(all) > 1 { format!(".{}", alike(&all[..index])) } else { String::new() };
     let band = one.band.map_or(String::new(), |band| format!(".{}", BANDS[band]));
     format!("{base}:{}{number}{band}", scene.lights[one.light].name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_hold_each_photon_once() {
+        for (whole, most) in
+            [(1, 1), (64, 64), (64, 16), (65, 16), (67, 16), (97, 96), (5, 2), (8192, 4096), (5000, 4096), (1025, 256)]
+        {
+            let (side, firsts) = tiles(whole, most);
+            let firsts: Vec<_> = firsts.collect();
+            assert!(side <= most && firsts.len() as u32 == whole.div_ceil(most).pow(2), "{whole} by {most}: {side}");
+            assert!(firsts.iter().flatten().all(|first| *first < whole), "{whole} by {most}: an empty tile");
+            let held = |[x, y]: [u32; 2]| u64::from(side.min(whole - x)) * u64::from(side.min(whole - y));
+            let held: u64 = firsts.into_iter().map(held).sum();
+            assert_eq!(held, u64::from(whole).pow(2), "{whole} by {most}");
+        }
+    }
 }

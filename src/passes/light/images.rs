@@ -2,12 +2,14 @@
 //! blocks the light before them, and the receivers.
 //!
 //! All views share the images, which are drawn anew before each of them; views that differ in their band alone share
-//! what is drawn. What is 16 bytes wide is float32, so that the images add no error of their own.
+//! what is drawn, and the tiles of a view its back and its receivers. What is 16 bytes wide is float32, so that the images
+//! add no error of their own.
 
 use super::{
-    Emission, VIEW,
-    emission::{sides, sized, view_name},
-    tracer::BACK,
+    Emission, LARGEST, VIEW,
+    emission::{distinct, sides, sized, view_name},
+    photons::SamplePush,
+    tracer::{BACK, TOTAL_REFLECTION},
 };
 use crate::{
     gpu::{Blend, BufferId, Draw, Format, ImageId, Lifetime, PassBuilder, Phase, Plan, Resource, Topology},
@@ -69,46 +71,83 @@ pub(super) struct Images {
     file: &'static str,
     /// Of each emission view: where its back and its receivers are seen from.
     views: BufferId,
-    /// One for each size of view.
-    sets: Vec<Set>,
+    /// One for each size of tile, or of view that is one tile.
+    near: Vec<Near>,
+    /// One for each size of whole view.
+    far: Vec<Far>,
     /// Of each emission view, where the tracer is `wyman2005`.
     inward: Vec<ImageId>,
 }
 
-/// The images of views of one size.
+/// The images of a tile: texels of theirs are its samples.
 #[derive(Clone, Copy)]
-struct Set {
+struct Near {
     side: u32,
     /// Scratch of the passes that keep no depth.
     depth: ImageId,
     front: Faces,
-    /// Where the class goes through a body.
-    back: Option<Faces>,
     /// Where something diffuse can stand before the glass.
     blockers: Option<ImageId>,
+}
+
+/// The images of a whole view, which light from any of its tiles goes through.
+#[derive(Clone, Copy)]
+struct Far {
+    side: u32,
+    depth: ImageId,
+    /// Where the class goes through a body.
+    back: Option<Faces>,
+    /// Where light goes on inside a body: of a view that is one tile the tile's own.
+    front: Option<Faces>,
     receivers: ImageId,
     receivers_depth: ImageId,
 }
 
-impl Set {
+/// Texels a side of the images of a whole view: as many as it has photons, or as there can be.
+fn far_side(emission: &Emission) -> u32 {
+    emission.whole.min(LARGEST)
+}
+
+/// Adds images of one size, and those that show a surface.
+fn image(plan: &mut Plan, bench: &Bench<'_>, name: &str, (sides, side): (&[u32], u32), format: Format) -> ImageId {
+    plan.image(&sized(&bench.name(name), sides, side), [side, side], format, Lifetime::Frame)
+}
+
+fn faces(plan: &mut Plan, bench: &Bench<'_>, name: &str, size: (&[u32], u32)) -> Faces {
+    Faces {
+        position: image(plan, bench, &format!("{name}.position"), size, Format::Rgba32f),
+        normal: image(plan, bench, &format!("{name}.normal"), size, Format::Rgba32f),
+    }
+}
+
+impl Near {
     fn plan(plan: &mut Plan, bench: &Bench<'_>, sides: &[u32], side: u32) -> Self {
-        let mut image = |name: &str, format| {
-            plan.image(&sized(&bench.name(name), sides, side), [side, side], format, Lifetime::Frame)
-        };
-        let mut faces = |name: &str| Faces {
-            position: image(&format!("{name}.position"), Format::Rgba32f),
-            normal: image(&format!("{name}.normal"), Format::Rgba32f),
-        };
-        let front = faces("front");
-        let back = (bench.class == PathClass::Transmit2).then(|| faces("back"));
+        let size = (sides, side);
         Self {
             side,
-            depth: image("depth", Format::Depth32f),
-            front,
+            depth: image(plan, bench, "depth", size, Format::Depth32f),
+            front: faces(plan, bench, "front", size),
+            blockers: can_block(bench).then(|| image(plan, bench, "blockers", size, Format::Depth32f)),
+        }
+    }
+}
+
+impl Far {
+    fn plan(plan: &mut Plan, bench: &Bench<'_>, near: &[Near], sides: &[u32], side: u32) -> Self {
+        let size = (sides, side);
+        let tile = near.iter().find(|near| near.side == side);
+        let depth = tile.map(|near| near.depth);
+        let depth = depth.unwrap_or_else(|| image(plan, bench, "depth.whole", size, Format::Depth32f));
+        let back = (bench.class == PathClass::Transmit2).then(|| faces(plan, bench, "back", size));
+        let front = || tile.map_or_else(|| faces(plan, bench, "front.whole", size), |near| near.front);
+        let front = (bench.settings.choice(&TOTAL_REFLECTION) == "follow").then(front);
+        Self {
+            side,
+            depth,
             back,
-            blockers: can_block(bench).then(|| image("blockers", Format::Depth32f)),
-            receivers: image("receivers", Format::Rgba32u),
-            receivers_depth: image("receivers.depth", Format::Depth32f),
+            front,
+            receivers: image(plan, bench, "receivers", size, Format::Rgba32u),
+            receivers_depth: image(plan, bench, "receivers.depth", size, Format::Depth32f),
         }
     }
 }
@@ -119,22 +158,29 @@ impl Set {
 struct RasterPush {
     size: [i32; 2],
     view: u32,
+    first: [i32; 2],
+    whole: i32,
 }
 
-/// Push constants of `glsl/light/sample.glsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-struct SamplePush {
-    size: [i32; 2],
-    light: u32,
-    view: u32,
+impl RasterPush {
+    /// All of a view.
+    fn whole(side: u32, view: usize) -> Self {
+        Self { size: [side as i32; 2], view: view as u32, first: [0; 2], whole: side as i32 }
+    }
+
+    /// The tile of an emission view in the list of those.
+    fn tile(emission: &Emission, view: usize) -> Self {
+        let first = emission.first.map(|n| n as i32);
+        Self { first, whole: emission.whole as i32, ..Self::whole(emission.side, view) }
+    }
 }
 
 impl Images {
     /// Adds the images, and the passes before the first frame.
     pub fn plan(plan: &mut Plan, bench: &Bench<'_>, tracer: &str) -> Result<Self, PlanError> {
         let views = image_views(bench, tracer)?;
-        let sides = sides(bench.emissions);
+        let (near, far) = (sides(bench.emissions), distinct(bench.emissions.iter().map(far_side)));
+        let near: Vec<_> = near.iter().map(|&side| Near::plan(plan, bench, &near, side)).collect();
         let mut images = Self {
             file: match tracer {
                 "wyman2005" => "light/far_wyman2005.glsl",
@@ -142,7 +188,8 @@ impl Images {
                 _ => "light/far_fixed_point.glsl",
             },
             views: plan.upload(&bench.name("image_views"), &views.iter().map(View::data).collect::<Vec<_>>()),
-            sets: sides.iter().map(|side| Set::plan(plan, bench, &sides, *side)).collect(),
+            far: far.iter().map(|&side| Far::plan(plan, bench, &near, &far, side)).collect(),
+            near,
             inward: Vec::new(),
         };
         let [back, blockers] = [bench.class == PathClass::Transmit2, can_block(bench)];
@@ -160,9 +207,14 @@ impl Images {
         Ok(images)
     }
 
-    /// Those of a view.
-    fn set(&self, emission: &Emission) -> &Set {
-        self.sets.iter().find(|set| set.side == emission.side).unwrap_or(&self.sets[0])
+    /// Those of a tile.
+    fn near(&self, emission: &Emission) -> &Near {
+        self.near.iter().find(|near| near.side == emission.side).unwrap_or(&self.near[0])
+    }
+
+    /// Those of its view.
+    fn far(&self, emission: &Emission) -> &Far {
+        self.far.iter().find(|far| far.side == far_side(emission)).unwrap_or(&self.far[0])
     }
 
     /// The way against the normal, once for views that differ in their band alone.
@@ -172,11 +224,11 @@ impl Images {
             return;
         }
         let name = bench.view_name("inward", index);
-        let Set { side, front, .. } = *self.set(&bench.emissions[index]);
+        let Near { side, front, .. } = *self.near(&bench.emissions[index]);
         let image = plan.image(&name, [side; 2], Format::R32f, Lifetime::Persistent);
         self.inward.push(image);
         self.draw_front(plan, bench, Phase::Prepare, index);
-        let push = SamplePush { size: [side as i32; 2], light: bench.emissions[index].lamp, view: index as u32 };
+        let push = SamplePush::of(&bench.emissions[index], index);
         bench
             .buffers
             .lights(bench.buffers.tracing(plan.pass(&name).phase(Phase::Prepare)))
@@ -192,39 +244,57 @@ impl Images {
         if is_drawn(bench, index) {
             return;
         }
-        self.draw_front(plan, bench, phase, index);
-        let set = *self.set(&bench.emissions[index]);
-        if let Some(back) = set.back {
-            let dielectric = |o: &Object| is_body(bench.scene, o);
-            let pass = self.faces(plan, bench, "back", phase, index, (self.views, 2 * index)).define("BACK", 1);
-            let pass = if bench.settings.choice(&BACK) == "farthest" { pass.define("FARTHEST", 1) } else { pass };
-            draw_faces(pass.depth(set.depth, true), Some(back), draws(bench.scene, bench.arrays, dielectric));
+        let emission = &bench.emissions[index];
+        if emission.begins_view() {
+            self.draw_far(plan, bench, phase, index);
         }
-        if let Some(blockers) = set.blockers {
-            let pass = self.faces(plan, bench, "blockers", phase, index, (bench.views, index));
+        self.draw_front(plan, bench, phase, index);
+        if let Some(blockers) = self.near(emission).blockers {
+            let push = RasterPush::tile(emission, index);
+            let pass = self.faces(plan, bench, "blockers", phase, index, (bench.views, push));
             let pass = pass.define("DEPTH_ALONE", 1).depth(blockers, true);
             draw_faces(pass, None, draws(bench.scene, bench.arrays, |o| !is_specular(bench.scene, o)));
         }
+    }
+
+    /// What all tiles of a view share.
+    fn draw_far(&self, plan: &mut Plan, bench: &Bench<'_>, phase: Phase, index: usize) {
+        let emission = &bench.emissions[index];
+        let far = *self.far(emission);
+        if let Some(back) = far.back {
+            let dielectric = |o: &Object| is_body(bench.scene, o);
+            let push = RasterPush::whole(far.side, 2 * index);
+            let pass = self.faces(plan, bench, "back", phase, index, (self.views, push)).define("BACK", 1);
+            let pass = if bench.settings.choice(&BACK) == "farthest" { pass.define("FARTHEST", 1) } else { pass };
+            draw_faces(pass.depth(far.depth, true), Some(back), draws(bench.scene, bench.arrays, dielectric));
+        }
+        if let Some(front) = far.front.filter(|_| far.side != emission.side) {
+            let push = RasterPush::whole(far.side, index);
+            let pass = self.faces(plan, bench, "front.whole", phase, index, (bench.views, push)).depth(far.depth, true);
+            draw_faces(pass, Some(front), draws(bench.scene, bench.arrays, |o| is_specular(bench.scene, o)));
+        }
         let name = bench.view_name("receivers", index);
-        let push = RasterPush { size: [set.side as i32; 2], view: 2 * index as u32 + 1 };
+        let push = RasterPush::whole(far.side, 2 * index + 1);
         bench
             .buffers
             .vertices(plan.pass(&name).phase(phase))
             .provide("raster_view.glsl", "light/raster_view.glsl")
             .read("raster_views", self.views)
             .push(&push)
-            .target(set.receivers, 0, Some([0.0; 4]), Blend::Replace)
-            .depth(set.receivers_depth, true)
+            .target(far.receivers, 0, Some([0.0; 4]), Blend::Replace)
+            .depth(far.receivers_depth, true)
             .draw(
                 &["eye/gbuffer.vert", "eye/gbuffer.frag"],
                 Topology::Triangles,
-                draws(bench.scene, bench.arrays, |o| receives(bench, &bench.emissions[index].view, o)),
+                draws(bench.scene, bench.arrays, |o| receives(bench, &emission.view, o)),
             );
     }
 
     fn draw_front(&self, plan: &mut Plan, bench: &Bench<'_>, phase: Phase, index: usize) {
-        let Set { depth, front, .. } = *self.set(&bench.emissions[index]);
-        let pass = self.faces(plan, bench, "front", phase, index, (bench.views, index)).depth(depth, true);
+        let emission = &bench.emissions[index];
+        let Near { depth, front, .. } = *self.near(emission);
+        let push = RasterPush::tile(emission, index);
+        let pass = self.faces(plan, bench, "front", phase, index, (bench.views, push)).depth(depth, true);
         draw_faces(pass, Some(front), draws(bench.scene, bench.arrays, |o| is_specular(bench.scene, o)));
     }
 
@@ -236,10 +306,9 @@ impl Images {
         base: &str,
         phase: Phase,
         index: usize,
-        (views, view): (BufferId, usize),
+        (views, push): (BufferId, RasterPush),
     ) -> PassBuilder<'p> {
         let name = bench.view_name(base, index);
-        let push = RasterPush { size: [self.set(&bench.emissions[index]).side as i32; 2], view: view as u32 };
         bench
             .buffers
             .surfaces(plan.pass(&name).phase(phase))
@@ -250,20 +319,26 @@ impl Images {
 
     /// Gives the tracer's dispatch over a view what it reads.
     pub fn give<'p>(&self, pass: PassBuilder<'p>, emission: &Emission, index: usize) -> PassBuilder<'p> {
-        let set = self.set(emission);
+        let (near, far) = (self.near(emission), self.far(emission));
         let pass = pass
             .provide("light/tracer.glsl", "light/image.glsl")
             .provide("far_side.glsl", self.file)
             .read("light_image_views", self.views)
-            .with(front_of(set.front))
-            .fetch("light_receivers", set.receivers)
-            .fetch("light_receivers_depth", set.receivers_depth);
-        let pass = match set.back {
+            .with(front_of(near.front))
+            .fetch("light_receivers", far.receivers)
+            .fetch("light_receivers_depth", far.receivers_depth);
+        let pass = match far.back {
             Some(back) => pass.fetch("light_back_position", back.position).fetch("light_back_normal", back.normal),
             None => pass,
         };
-        let pass = match set.blockers {
+        let pass = match near.blockers {
             Some(blockers) => pass.define("BLOCKERS", 1).fetch("light_blockers", blockers),
+            None => pass,
+        };
+        let pass = match far.front {
+            Some(front) => {
+                pass.fetch("light_whole_front_position", front.position).fetch("light_whole_front_normal", front.normal)
+            }
             None => pass,
         };
         match self.inward.get(index) {

@@ -34,6 +34,19 @@ pub static SIDE: Whole = Whole {
     doc: "photons along each side of a light's emission view (N of N x N)",
 };
 
+/// Photons a side of the photon buffer.
+pub static TILE: Whole = Whole {
+    key: "light.tile",
+    unit: "texels",
+    default: LARGEST,
+    range: 1..=LARGEST,
+    doc: "photons a side of the photon buffer, at most: views of more are traced and gathered tile by tile; the picture is \
+          the same, but for splats as wide as their neighbours are far, which know none beyond a tile",
+};
+
+/// Every Vulkan device has images of so many texels a side (`maxImageDimension2D`).
+const LARGEST: u32 = 4096;
+
 /// How the emission view is chosen.
 pub static VIEW: Choice = Choice {
     key: "light.view",
@@ -75,6 +88,7 @@ pub static LAYERS: Whole = Whole {
 /// Settings of this room.
 pub static SETTINGS: &[Setting] = &[
     Setting::Whole(&SIDE),
+    Setting::Whole(&TILE),
     Setting::Choice(&VIEW),
     Setting::Whole(&AREA_SAMPLES),
     Setting::Choice(&TRACER),

@@ -152,12 +152,30 @@ pub fn photon_buffer(
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct SamplePush {
-    /// Texels of the view.
+    /// Samples of the photon image that lie in the view.
     pub size: [i32; 2],
     /// The light.
     pub light: u32,
     /// The view's place among the views.
     pub view: u32,
+    /// The whole view's sample that is the image's first.
+    pub first: [i32; 2],
+    /// Samples a side of the whole view.
+    pub whole: i32,
+}
+
+impl SamplePush {
+    /// Of the view in that place.
+    pub fn of(emission: &Emission, index: usize) -> Self {
+        let whole = |pair: [u32; 2]| pair.map(|n| n as i32);
+        Self {
+            size: whole(emission.held()),
+            light: emission.lamp,
+            view: index as u32,
+            first: whole(emission.first),
+            whole: emission.whole as i32,
+        }
+    }
 }
 
 /// The tracer over one view, which several passes run.
@@ -187,7 +205,7 @@ impl Tracing<'_> {
 
     /// Push constants of a dispatch over the view.
     pub fn push(&self) -> SamplePush {
-        SamplePush { size: [self.photons.side as i32; 2], light: self.emission.lamp, view: self.index as u32 }
+        SamplePush::of(self.emission, self.index)
     }
 
     /// Gives a pass all that tracing from the view reads but push constants.
