@@ -36,11 +36,6 @@ bool is_coarse(Cell c, vec4 b) {
     return bent.x > TEXELS && bent.y > SHARE || size.x * size.y > WIDE;
 }
 
-// The corners' places about a cell's, in their order round it.
-ivec2 step_to(int k) {
-    return ivec2((k + 1) >> 1 & 1, k >> 1);
-}
-
 // The layer that takes the centre's photon, or none.
 int layer_of_centre(vec4 hit, float normal) {
     vec2 xy01;

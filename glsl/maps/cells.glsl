@@ -10,7 +10,6 @@
 #include "shared/splat.glsl"
 
 const int NO_MAP = -1;
-const uint LARGE_PLACES = 32768u; // of the list of large pieces
 const uint SLOTS = 64u; // places beyond the map's, twice: sums of what arrived, and of what of it went as points
 
 // A corner's or a centre's landing.
@@ -23,6 +22,11 @@ struct Cell {
     Corner corner[4]; // in their order round it
     Corner centre;
 };
+
+// The corners' places about a cell's, in their order round it.
+ivec2 step_to(int k) {
+    return ivec2((k + 1) >> 1 & 1, k >> 1);
+}
 
 // Texels beyond which a place is not told from infinity.
 const float FARTHEST = 1e5;
@@ -94,15 +98,37 @@ void book(uint slot, vec3 arrived) {
     add_flux(places() + slot % SLOTS, arrived);
 }
 
-// A part of a cell too large for one invocation.
+// Rows of a piece of a cell too large for one invocation.
 struct Large {
     Flat shape;
-    vec3 flux; // W
+    vec3 flux; // W, of all its rows
     int layer;
+    int row; // the first, counted from the first that the map has of it
 };
 
-layout(set = 0, binding = 19, scalar) buffer Counts { uint data[]; } cells_counts; // two a view: cells listed, large pieces
+layout(set = 0, binding = 19, scalar) buffer Counts { uint data[]; } cells_counts; // two a view: cells listed, large parts
 layout(set = 0, binding = 20, scalar) buffer LargeList { Large data[]; } cells_large;
+
+// Rows of a part, of which a piece has `across` texels each.
+int rows_of_part(int across) {
+    const int TEXELS = 4096; // of a part: some tens for each of a work group's invocations
+    return max(TEXELS / across, 1);
+}
+
+// What one of several invocations spreads of a part.
+void spread_part(Large large, int which, int several) {
+    const int PIECE = 16; // texels of a row
+    ivec2 first, last;
+    if (!reach(large.shape, push.side, first, last)) return;
+    Flat t = from_texel(large.shape, first);
+    vec3 density = density_of(t, large.flux);
+    ivec2 size = last - first + 1;
+    int rows = min(rows_of_part(size.x), size.y - large.row), pieces = (size.x + PIECE - 1) / PIECE;
+    for (int k = which; k < pieces * rows; k += several) {
+        int from = k / rows * PIECE, row = large.row + k % rows;
+        spread_row(t, row, from, min(from + PIECE, size.x) - 1, first, large.layer, density);
+    }
+}
 
 // Spreads what few texels hold, and lists the rest while there is room: its neighbours would wait for it.
 void spread_or_list(Flat t, int layer, vec3 flux) {
@@ -110,14 +136,20 @@ void spread_or_list(Flat t, int layer, vec3 flux) {
     ivec2 first, last;
     if (!reach(t, push.side, first, last)) return;
     ivec2 size = last - first + 1;
-    if (size.x * size.y > FEW && !is_thin(t)) {
-        uint place = atomicAdd(cells_counts.data[2u * push.view + 1u], 1u);
-        if (place < LARGE_PLACES) {
-            cells_large.data[place] = Large(t, flux, layer);
-            return;
+    if (size.x * size.y <= FEW || is_thin(t)) {
+        spread(t, push.side, layer, flux);
+        return;
+    }
+    int rows = rows_of_part(size.x);
+    uint parts = uint((size.y + rows - 1) / rows), place = atomicAdd(cells_counts.data[2u * push.view + 1u], parts);
+    for (uint part = 0u; part < parts; part++) {
+        Large large = Large(t, flux, layer, int(part) * rows);
+        if (place + part < uint(cells_large.data.length())) {
+            cells_large.data[place + part] = large;
+        } else {
+            spread_part(large, 0, 1);
         }
     }
-    spread(t, push.side, layer, flux);
 }
 
 // A cell's flux; returns what of it lands in the map. A quarter for each of the triangles about the centre, which never fold;

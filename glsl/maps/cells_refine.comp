@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// The cells that one sheet of light is too coarse for, each traced as 4 x 4 smaller ones, a row of which an invocation takes.
-// What is still no sheet, or torn, goes as points.
+// The cells that one sheet of light is too coarse for, each traced as 4 x 4 smaller ones by a work group: first their corners
+// and centres, each by an invocation, then the photons of each. What is still no sheet, or torn, goes as points.
 
 #define PUSH_MORE int side; float diameter; // texels
 #include "light/sample.glsl"
@@ -20,7 +20,9 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 18, scalar) readonly buffer List { uint data[]; } cells_list;
 
 const int FINER = 4; // smaller cells a side
-const int STEPS = 3 * FINER + 2; // of a row: two corners, then a centre and two corners for each smaller cell
+const int CORNERS = FINER + 1;
+const int FIRST_CENTRE = CORNERS * CORNERS;
+const int SAMPLES = FIRST_CENTRE + FINER * FINER;
 
 #ifdef LAYERS
 const int PHOTONS = LAYERS;
@@ -35,10 +37,8 @@ struct Arrival {
     int layer;
 };
 
-// All that a light sample leaves.
-struct Sample {
-    Arrival photon[PHOTONS];
-};
+shared Arrival arrivals[SAMPLES][PHOTONS];
+shared vec3 arrived[64]; // W, by the invocations
 
 Arrival arrival_of(Photon p) {
     uint way = photon_way(p);
@@ -49,81 +49,76 @@ Arrival arrival_of(Photon p) {
 }
 
 #ifdef LAYERS
-Sample traced;
+int traced; // of the samples
 
 void end_photon(Photon p) {
     if (p.status != PHOTON_VALID) return;
     int layer = take_layer(sum_of_bands(p.flux));
-    if (layer != NO_LAYER) traced.photon[layer] = arrival_of(p);
+    if (layer != NO_LAYER) arrivals[traced][layer] = arrival_of(p);
 }
 #endif
 
-// A corner of the smaller cells, or a centre, counted from the view's first.
-Sample sample_at(ivec2 at, bool centre) {
+// Traces a corner of the smaller cells, or a centre, counted from the image's first.
+void trace_sample(int number, ivec2 at, bool centre) {
     LightSample light = light_sample(min(at, FINER * push.size - 1), FINER);
     if (!centre) light = light_sample_at(place_in_view(vec2(at), FINER), light.footprint);
 #ifdef LAYERS
+    traced = number;
     layers_filled = 0;
-    for (int k = 0; k < PHOTONS; k++) traced.photon[k].landed.way = 0u;
+    for (int k = 0; k < PHOTONS; k++) arrivals[number][k].landed.way = 0u;
     trace_tree(light);
-    return traced;
 #else
-    return Sample(Arrival[PHOTONS](arrival_of(trace_photon(light))));
+    arrivals[number][0] = arrival_of(trace_photon(light));
 #endif
 }
 
 // Where that way led from a corner.
-Corner by_way(Sample corner, uint way) {
+Corner by_way(int corner, uint way) {
     for (int k = 0; k < PHOTONS; k++) {
-        if (corner.photon[k].landed.way == way) return corner.photon[k].landed;
+        if (arrivals[corner][k].landed.way == way) return arrivals[corner][k].landed;
     }
     return Corner(vec2(0.0), 0u);
 }
 
-// What of a smaller cell's flux lands in the map.
-vec3 take(Sample corner[4], Sample centre, uint slot) {
-    vec3 arrived = vec3(0.0);
-    for (int k = 0; k < PHOTONS; k++) {
-        Arrival a = centre.photon[k];
-        if (a.landed.way == 0u) continue;
-        Cell c;
-        c.centre = a.landed;
-        for (int at = 0; at < 4; at++) c.corner[at] = by_way(corner[at], a.landed.way);
-        if (!is_one_sheet(c) || is_torn(c)) {
-            arrived += put_point(c.centre.at, a.layer, a.flux, slot);
-        } else if (!is_beside_map(bounds(c), push.side)) {
-            arrived += spread_cell(c, a.layer, a.flux);
-        }
+// What of a photon's flux about the centre of a smaller cell lands in the map.
+vec3 take(ivec2 at, int photon, uint slot) {
+    Arrival a = arrivals[FIRST_CENTRE + at.y * FINER + at.x][photon];
+    if (a.landed.way == 0u) return vec3(0.0);
+    Cell c;
+    c.centre = a.landed;
+    for (int k = 0; k < 4; k++) {
+        ivec2 corner = at + step_to(k);
+        c.corner[k] = by_way(corner.y * CORNERS + corner.x, a.landed.way);
     }
-    return arrived;
+    if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, a.layer, a.flux, slot);
+    return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, a.layer, a.flux);
 }
 
-// From left to right: corners above and below, then a centre and the corners right of it.
-void refine_row(ivec2 first, uint slot) {
-    Sample corner[4], centre;
-    vec3 arrived = vec3(0.0);
-    for (int step = 0; step < STEPS; step++) {
-        int kind = step % 3, x = step / 3;
-        Sample s = sample_at(first + ivec2(x, kind & 1), kind == 2);
-        if (kind == 0) {
-            corner[0] = corner[1];
-            corner[3] = corner[2];
-            corner[1] = s;
-        } else if (kind == 1) {
-            corner[2] = s;
-            if (x > 0) arrived += take(corner, centre, slot);
-        } else {
-            centre = s;
-        }
+void refine(uint cell) {
+    int lane = int(gl_LocalInvocationIndex), number = int(cells_list.data[cell]);
+    ivec2 first = FINER * ivec2(number % push.size.x, number / push.size.x);
+    if (lane < FIRST_CENTRE) {
+        trace_sample(lane, first + ivec2(lane % CORNERS, lane / CORNERS), false);
+    } else if (lane < SAMPLES) {
+        int centre = lane - FIRST_CENTRE;
+        trace_sample(lane, first + ivec2(centre % FINER, centre / FINER), true);
     }
-    book(slot, arrived);
+    barrier();
+    vec3 got = vec3(0.0);
+    for (int k = lane; k < FINER * FINER * PHOTONS; k += 64) {
+        int at = k % (FINER * FINER);
+        got += take(ivec2(at % FINER, at / FINER), k / (FINER * FINER), uint(number));
+    }
+    arrived[lane] = got;
+    barrier();
+    if (lane == 0) {
+        for (int k = 1; k < 64; k++) got += arrived[k]; // in one order, or it would not repeat
+        book(uint(number), got);
+    }
+    barrier();
 }
 
 void main() {
-    uint rows = uint(FINER) * cells_counts.data[2u * push.view];
-    for (uint row = gl_GlobalInvocationID.x; row < rows; row += 64u * gl_NumWorkGroups.x) {
-        int number = int(cells_list.data[row / uint(FINER)]);
-        ivec2 cell = ivec2(number % push.size.x, number / push.size.x);
-        refine_row(FINER * cell + ivec2(0, row % uint(FINER)), row);
-    }
+    uint cells = cells_counts.data[2u * push.view];
+    for (uint cell = gl_WorkGroupID.x; cell < cells; cell += gl_NumWorkGroups.x) refine(cell);
 }

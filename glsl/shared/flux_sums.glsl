@@ -16,7 +16,10 @@ void add_fixed(uint word, float flux) {
     if (!(units > 0.0)) return;
     uint high = uint(units * 2.3283064e-10); // 2^-32
     float rest = units - float(high) * 4294967296.0;
-    uint low = uint(rest) + (fract(rest) >= 0.5 ? 1u : 0u);
+    // Rounded up by chance, as often as what is left over says: a faint light that many texels share, less than a unit each,
+    // would else be lost or made. Golden steps from word to word spread chance evenly.
+    float chance = float(word * 2654435769u) * 2.3283064e-10;
+    uint low = uint(rest) + (fract(rest) > chance ? 1u : 0u);
     uint before = atomicAdd(flux_sums.data[word], low);
     if (before + low < before) high++;
     if (high != 0u) atomicAdd(flux_sums.data[word + 1u], high);

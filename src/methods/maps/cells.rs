@@ -14,6 +14,7 @@ use crate::{
         PlanError,
         light::{Column, Corners, SamplePush, TRACER, Tracing},
     },
+    scene::PathClass,
 };
 
 /// What a centre's photon must tell.
@@ -21,17 +22,25 @@ pub const COLUMNS: &[Column] = &[Column::Hit, Column::Flux, Column::Way];
 /// Places beyond the map's where what arrived is summed, and what of it went as points (`SLOTS` of `glsl/maps/cells.glsl`).
 pub const PLACES: u64 = 128;
 /// Light samples that a refined cell takes (`SAMPLES` of `glsl/maps/cells_refine.comp`).
-const SAMPLES: u64 = 4 * 14;
-/// Large pieces that are listed at most; what comes after is spread where it is found (`LARGE_PLACES` of
-/// `glsl/maps/cells.glsl`).
-const LARGE_PLACES: u64 = 32_768;
-/// Bytes of one (`Large` there).
-const LARGE_BYTES: u64 = 48;
+const SAMPLES: u64 = 25 + 16;
+/// Parts of large pieces that are listed for each photon of a view, and at most; what comes after is spread where it is found.
+const LARGE_EACH: u64 = 16;
+const LARGE_MOST: u64 = 1 << 18;
+/// Bytes of one (`Large` of `glsl/maps/cells.glsl`).
+const LARGE_BYTES: u64 = 52;
 /// Words of the tally.
 const TALLY_BYTES: u64 = 7 * 4;
-/// Work groups that share the listed cells, 16 of which they take at once: enough for the widest device, and few enough to
-/// cost nothing where none is listed.
-const GROUPS: u32 = 256;
+/// Work groups that share the parts: enough for the widest device, and few enough to cost next to nothing where none is
+/// listed.
+const GROUPS: u32 = 4096;
+/// Work groups that share the listed cells, for each photon along a side: cells are cut by lines, and grow with it. lavapipe
+/// ends all loops of an invocation after 65535 rounds: one that took hundreds of cells would lose light there. Groups cost it a
+/// tenth of a millisecond each, with or without a cell.
+const REFINING: u32 = 2;
+/// As many times more where a sample grows a tree.
+const REFINING_TREES: u32 = 8;
+/// Photons a sample that a work group's shared memory holds for 41 samples, of the 16 KiB that every device has.
+const LAYERS_MOST: u32 = 14;
 /// Invocations along one side of the other work groups.
 const GROUP: u32 = 8;
 
@@ -106,16 +115,24 @@ impl Cells {
     /// Adds what all views share.
     ///
     /// # Errors
-    /// What the tracer of corners cannot do.
+    /// Where a sample leaves more photons than are matched, and what the tracer of corners cannot do.
     pub fn plan(job: &mut Job<'_>, axes: Axes<'_>, side: u32, views: BufferId) -> Result<Option<Self>, PlanError> {
         if axes.splat != "cells" {
             return Ok(None);
+        }
+        if job.photons.layers() > LAYERS_MOST {
+            return Err(PlanError::Refused {
+                what: format!("maps.splat=cells with light.layers={}", job.photons.layers()),
+                reason: format!("a work group has memory for {LAYERS_MOST} photons of each of a cell's samples"),
+                remedy: format!("set light.layers={LAYERS_MOST} or less, or maps.splat=fixed"),
+            });
         }
         let corners = Corners::plan(job.plan, job.bench, &[Column::Hit, Column::Way])?;
         let count = job.emissions.len();
         let cells = u64::from(job.photons.side).pow(2);
         let counts = job.plan.upload_once("maps/cells.counts", &vec![0u32; 2 * count]);
-        let large = job.plan.buffer("maps/cells.large", LARGE_PLACES * LARGE_BYTES, Lifetime::Frame);
+        let places = (LARGE_EACH * cells * u64::from(job.photons.layers())).min(LARGE_MOST);
+        let large = job.plan.buffer("maps/cells.large", places * LARGE_BYTES, Lifetime::Frame);
         let list = (job.settings.choice(&TRACER) == "bvh")
             .then(|| job.plan.buffer("maps/cells.list", 4 * cells, Lifetime::Frame));
         if list.is_none() {
@@ -171,11 +188,13 @@ impl Cells {
             index: view,
         };
         let (side, diameter) = (self.side as i32, self.diameter);
+        let several = matches!(job.bench.class, PathClass::All(_));
+        let groups = job.photons.side * REFINING * if several { REFINING_TREES } else { 1 };
         let pass = tracing.give(self.give(fixed, job.plan.pass(name)));
         pass.read("maps_views", self.views)
             .read("cells_list", list)
             .push(&RefinePush { sample: tracing.push(), side, diameter })
-            .dispatch("maps/cells_refine.comp", [GROUPS, 1, 1], GROUP * GROUP);
+            .dispatch("maps/cells_refine.comp", [groups, 1, 1], GROUP * GROUP);
     }
 
     /// What all passes over cells read and write.
