@@ -6,8 +6,8 @@
 #include "light/back.glsl"
 
 // The front that the whole view sees: light that entered in one tile may meet it in another.
-layout(set = 0, binding = 25) uniform sampler2D light_whole_front_position;
-layout(set = 0, binding = 26) uniform sampler2D light_whole_front_normal;
+layout(set = 0, binding = 31) uniform sampler2D light_whole_front_position;
+layout(set = 0, binding = 32) uniform sampler2D light_whole_front_normal;
 
 const int INSIDE_STEPS = 64;
 const int INSIDE_HALVINGS = 16;

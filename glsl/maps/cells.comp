@@ -86,9 +86,9 @@ bool has_strays(ivec2 texel, uint way[PHOTONS]) {
 }
 
 void main() {
-    ivec2 size = push.size, texel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(texel, size))) return;
-    uint way[PHOTONS], number = uint(texel.y * size.x + texel.x);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(texel, push.size))) return;
+    uint way[PHOTONS], number = uint(texel.y * push.size.x + texel.x);
     for (int photon = 0; photon < PHOTONS; photon++) {
         way[photon] = uint(texelFetch(photons_way, PHOTON_PLACE(texel, photon), 0).r);
         for (int k = 0; k < 4; k++) {

@@ -58,7 +58,7 @@ void end_photon(Photon p) {
 }
 #endif
 
-// Traces a corner of the smaller cells, or a centre, counted from the view's first.
+// Traces a corner of the smaller cells, or a centre, counted from the image's first.
 void trace_sample(int number, ivec2 at, bool centre) {
     LightSample light = light_sample(min(at, FINER * push.size - 1), FINER);
     if (!centre) light = light_sample_at(place_in_view(vec2(at), FINER), light.footprint);

@@ -148,14 +148,8 @@ fn photon_passes(
     };
     let most = || emissions.iter().map(light::Emission::most).fold(0.0, f64::max);
     let half = method.halves(settings).then(most);
-    let photons = light::photon_buffer(
-        plan,
-        settings,
-        class,
-        &method.columns(settings),
-        half,
-        &light::sides(&emissions, |e| e.side),
-    );
+    let photons =
+        light::photon_buffer(plan, settings, class, &method.columns(settings), half, &light::sides(&emissions));
     let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
     let views = plan.upload("light/views", &views);
     let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views, base: "light" };

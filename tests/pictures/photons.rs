@@ -45,9 +45,7 @@ fn traced(scene: &Scene, columns: &[Column]) -> Traced {
     let emissions = light::emissions(scene, &settings, &scene.region).unwrap();
     assert_eq!(emissions.len(), 1, "one sun, one view");
     let class = light::paths(scene, &settings);
-    let photons =
-        light::photon_buffer(&mut plan, &settings, class, columns, None, &light::sides(&emissions, |e| e.side))
-            .remove(0);
+    let photons = light::photon_buffer(&mut plan, &settings, class, columns, None, &light::sides(&emissions)).remove(0);
     let views = plan.upload("light/views", &[emissions[0].view.data()]);
     let (emissions, settings) = (&emissions, &settings);
     let bench = Bench { scene, arrays: &arrays, buffers: &buffers, settings, class, emissions, views, base: "light" };

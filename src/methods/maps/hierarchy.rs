@@ -27,7 +27,7 @@ impl Hierarchy {
         if !axes.streams() {
             return Vec::new();
         }
-        let sides = light::sides(job.emissions, |e| e.side);
+        let sides = light::sides(job.emissions);
         let all: Vec<Self> = sides.iter().filter_map(|&side| Self::of(job, axes, &sides, side)).collect();
         if all.is_empty() {
             too_few(job, &["maps/pyramid", "maps/traverse"], "they are fetched");

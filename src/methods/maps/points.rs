@@ -55,7 +55,7 @@ impl Points {
                 remedy: "lower maps.side, or set maps.traverse=hierarchical".into(),
             });
         }
-        let sides = light::sides(job.emissions, |e| e.side);
+        let sides = light::sides(job.emissions);
         let rows = job.emissions.len() as u64 * Groups::BYTES;
         let rows = job.plan.buffer("maps/points.rows", rows, Lifetime::Frame);
         let all: Vec<Self> = sides.iter().filter_map(|&side| Self::of(job, axes, &sides, side, rows)).collect();

@@ -29,7 +29,7 @@ impl Corners {
             |e: &Emission| Emission { view: wider(e.view, e.whole), side: e.side + 1, whole: e.whole + 1, ..*e };
         let emissions: Vec<_> = bench.emissions.iter().map(wider).collect();
         let views = plan.upload("light/corners.views", &emissions.iter().map(|e| e.view.data()).collect::<Vec<_>>());
-        let sides = sides(&emissions, |e| e.side);
+        let sides = sides(&emissions);
         let each = |&side: &u32| Photons::beside(plan, bench, &sized(BASE, &sides, side), side, columns);
         let photons = sides.iter().map(each).collect();
         let tracer = Tracer::plan(plan, &bench_of(bench, &emissions, views))?;

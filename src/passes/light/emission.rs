@@ -73,9 +73,14 @@ fn shared_side(side: u32, count: u32) -> u32 {
     ((f64::from(side) / f64::from(count).sqrt()).round() as u32).max(1)
 }
 
-/// Sides that there are, the greatest first: views of one size share a photon buffer.
-pub fn sides(emissions: &[Emission], side: impl Fn(&Emission) -> u32) -> Vec<u32> {
-    let mut sides: Vec<u32> = emissions.iter().map(side).collect();
+/// Photons a side that there are, the most first: views of one size share a photon buffer.
+pub fn sides(emissions: &[Emission]) -> Vec<u32> {
+    distinct(emissions.iter().map(|emission| emission.side))
+}
+
+/// Sides, the greatest first, each once.
+pub(super) fn distinct(sides: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut sides: Vec<u32> = sides.collect();
     sides.sort_unstable_by(|a, b| b.cmp(a));
     sides.dedup();
     sides

@@ -7,7 +7,7 @@
 
 use super::{
     Emission, LARGEST, VIEW,
-    emission::{sides, sized, view_name},
+    emission::{distinct, sides, sized, view_name},
     photons::SamplePush,
     tracer::{BACK, TOTAL_REFLECTION},
 };
@@ -179,7 +179,7 @@ impl Images {
     /// Adds the images, and the passes before the first frame.
     pub fn plan(plan: &mut Plan, bench: &Bench<'_>, tracer: &str) -> Result<Self, PlanError> {
         let views = image_views(bench, tracer)?;
-        let (near, far) = (sides(bench.emissions, |e| e.side), sides(bench.emissions, far_side));
+        let (near, far) = (sides(bench.emissions), distinct(bench.emissions.iter().map(far_side)));
         let near: Vec<_> = near.iter().map(|&side| Near::plan(plan, bench, &near, side)).collect();
         let mut images = Self {
             file: match tracer {
