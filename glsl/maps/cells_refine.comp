@@ -30,22 +30,20 @@ const int PHOTONS = LAYERS;
 const int PHOTONS = 1;
 #endif
 
-// What a photon brings to the map.
+// A photon that lands on a receiver.
 struct Arrival {
-    Corner landed;
+    vec3 p;
+    uint way; // 0: none
     vec3 flux; // W
-    int layer;
+    float normal; // packed
+    uint receiver;
 };
 
 shared Arrival arrivals[SAMPLES][PHOTONS];
 shared vec3 arrived[64]; // W, by the invocations
 
 Arrival arrival_of(Photon p) {
-    uint way = photon_way(p);
-    vec2 xy01;
-    int layer = way == 0u ? NO_MAP : layer_of(p.receiver, push.light);
-    if (layer != NO_MAP && !map_project(maps_views.data[layer].view, p.hit, p.normal, xy01)) layer = NO_MAP;
-    return Arrival(landed_at(p.hit, way, layer, push.side), p.flux, layer);
+    return Arrival(p.hit, photon_way(p), p.flux, octahedral_pack(p.normal), p.receiver);
 }
 
 #ifdef LAYERS
@@ -65,7 +63,7 @@ void trace_sample(int number, ivec2 at, bool centre) {
 #ifdef LAYERS
     traced = number;
     layers_filled = 0;
-    for (int k = 0; k < PHOTONS; k++) arrivals[number][k].landed.way = 0u;
+    for (int k = 0; k < PHOTONS; k++) arrivals[number][k].way = 0u;
     trace_tree(light);
 #else
     arrivals[number][0] = arrival_of(trace_photon(light));
@@ -73,25 +71,36 @@ void trace_sample(int number, ivec2 at, bool centre) {
 }
 
 // Where that way led from a corner.
-Corner by_way(int corner, uint way) {
+Corner by_way(int corner, uint way, int map) {
     for (int k = 0; k < PHOTONS; k++) {
-        if (arrivals[corner][k].landed.way == way) return arrivals[corner][k].landed;
+        if (arrivals[corner][k].way == way) return landed_at(arrivals[corner][k].p, way, map);
     }
     return Corner(vec2(0.0), 0u);
 }
 
-// What of a photon's flux about the centre of a smaller cell lands in the map.
-vec3 take(ivec2 at, int photon, uint slot) {
-    Arrival a = arrivals[FIRST_CENTRE + at.y * FINER + at.x][photon];
-    if (a.landed.way == 0u) return vec3(0.0);
+// What of a flux (W) about the centre of a smaller cell lands in a view's layer.
+vec3 put_cell(ivec2 at, Arrival a, int map, vec3 flux, uint slot) {
     Cell c;
-    c.centre = a.landed;
+    c.centre = landed_at(a.p, a.way, map);
     for (int k = 0; k < 4; k++) {
         ivec2 corner = at + step_to(k);
-        c.corner[k] = by_way(corner.y * CORNERS + corner.x, a.landed.way);
+        c.corner[k] = by_way(corner.y * CORNERS + corner.x, a.way, map);
     }
-    if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, a.layer, a.flux, slot);
-    return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, a.layer, a.flux);
+    if (c.centre.way == 0u) return vec3(0.0);
+    if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, map, flux, slot);
+    return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, map, flux);
+}
+
+// What of a photon's lands in the map.
+vec3 take(ivec2 at, int photon, uint slot) {
+    Arrival a = arrivals[FIRST_CENTRE + at.y * FINER + at.x][photon];
+    vec3 got = vec3(0.0);
+    if (a.way == 0u) return got;
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        float share = share_of(map, a.p, octahedral_unpack(a.normal), a.receiver);
+        if (share > 0.0) got += put_cell(at, a, map, share * a.flux, slot);
+    }
+    return got;
 }
 
 void refine(uint cell) {
