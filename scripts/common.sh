@@ -39,5 +39,13 @@ run() {
   return "$status"
 }
 
+# Sum of the medians of the stages that make the caustic, ms, from the samples of a render as CSV ($1).
+cost_of() {
+  awk -F, '$1 ~ /^(light|maps)\// && $2 != "" { print $1, $3 }' "$1" | sort -k 1,1 -k 2,2n | awk '
+    $1 != name { add(); name = $1; n = 0 } { ms[++n] = $2 }
+    function add() { if (n) sum += (ms[int((n + 1) / 2)] + ms[int((n + 2) / 2)]) / 2 }
+    END { add(); if (sum) printf "%.0f", sum; else printf "-" }'
+}
+
 use_rustup
 name_shaderc
