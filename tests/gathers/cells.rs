@@ -40,13 +40,16 @@ fn all_that_arrives_is_deposited() {
         ("glass-sphere", "transmit-2", "bvh", "97"),
         ("glass-sphere", "transmit-2", "fixed-point", "64"),
         ("bunny", "transmit-2", "bvh", "40"),
+        ("bunny", "transmit-2", "bvh follow", "32"),
         ("gem", "transmit-2", "bvh", "64"),
         ("paraboloid", "reflect-1", "bvh", "64"),
         ("sine-water", "transmit-1", "wyman2005", "3"), // each cell folds more than once
         ("bunny", "all:4", "bvh", "24"),
         ("room", "all:3", "bvh", "12"),
     ] {
-        let set = [("light.paths", class), ("light.tracer", tracer), ("light.side", side)];
+        let (tracer, reflected) = tracer.split_once(' ').unwrap_or((tracer, "drop"));
+        let reflected = ("light.total_reflection", reflected);
+        let set = [("light.paths", class), ("light.tracer", tracer), reflected, ("light.side", side)];
         let what = format!("{scene} {class} {tracer} {side}²");
         judge(&what, &cells(&gpu, scene, &set), if ["3", "12"].contains(&side) { f64::INFINITY } else { SAMPLED });
     }

@@ -6,6 +6,7 @@ mod common;
 mod hard;
 mod levels;
 mod model;
+mod receivers;
 mod tiles;
 mod varying;
 
