@@ -4,9 +4,6 @@
 
 #include "maps/photon_splat.glsl"
 #include "shared/flux_sums.glsl"
-#ifdef SHAPED
-#include "maps/shape.glsl"
-#endif
 
 // The texels that a point of this size about p would cover: as `splat_norm` sums over them.
 ivec2 covered(float p, float d, int side) {
@@ -18,7 +15,18 @@ uint place_of(Splat s, int x, int y) {
 }
 
 void deposit(Splat s) {
-    ivec2 columns = covered(s.centre.x, s.diameter, s.side), rows = covered(s.centre.y, s.diameter, s.side);
+    ivec2 columns = covered(s.centre.x, s.diameter, s.side);
+#ifdef SHAPED
+    for (int x = columns.x; x < columns.y; x++) {
+        float beside = float(x) + 0.5 - s.centre.x, centre = s.centre.y + s.shape.y * beside;
+        float across = splat_weight(beside, 0.0, s.diameter);
+        ivec2 rows = covered(centre, s.shape.x, s.side);
+        for (int y = rows.x; y < rows.y; y++) {
+            add_flux(place_of(s, x, y), across * splat_weight(float(y) + 0.5, centre, s.shape.x) * s.flux);
+        }
+    }
+#else
+    ivec2 rows = covered(s.centre.y, s.diameter, s.side);
     for (int y = rows.x; y < rows.y; y++) {
         float across = splat_weight(float(y) + 0.5, s.centre.y, s.diameter);
         for (int x = columns.x; x < columns.y; x++) {
@@ -26,20 +34,7 @@ void deposit(Splat s) {
             add_flux(place_of(s, x, y), share);
         }
     }
-}
-
-#ifdef SHAPED
-void deposit(Splat s, Shape shape) {
-    ivec2 columns = covered(s.centre.x, s.diameter, s.side);
-    for (int x = columns.x; x < columns.y; x++) {
-        float beside = float(x) + 0.5 - s.centre.x, centre = s.centre.y + shape.lean * beside;
-        float across = splat_weight(beside, 0.0, s.diameter);
-        ivec2 rows = covered(centre, shape.rows, s.side);
-        for (int y = rows.x; y < rows.y; y++) {
-            add_flux(place_of(s, x, y), across * splat_weight(float(y) + 0.5, centre, shape.rows) * s.flux);
-        }
-    }
-}
 #endif
+}
 
 #endif

@@ -7,17 +7,14 @@
 // row, layer after layer. Each becomes, in its receiver's layer of the map, a point splat whose weights sum to one over the
 // texels it touches.
 
-#include "maps/varying.glsl"
+#include "maps/points_splat.glsl"
 #include "maps/splat_point.glsl"
 
 void main() {
     int rows = photons_side();
     ivec2 texel = ivec2(gl_VertexIndex, gl_InstanceIndex % rows);
     int layer = gl_InstanceIndex / rows;
-    vec4 flux = flux_at(texel, layer);
-    Landed l;
-    Splat s = NO_SPLAT;
-    bool takes = land(hit_at(texel, layer), flux.w, l);
-    if (takes) takes = splat_of(l, photon_flux(flux.rgb), splat_size(l, texel, 0, layer), s);
+    Splat s;
+    bool takes = point_splat(texel, 0, layer, s);
     emit_splat(s, takes);
 }

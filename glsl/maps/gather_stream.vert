@@ -14,12 +14,6 @@ layout(location = 0) in uvec2 streamed;
 void main() {
     StreamPoint at = unpack_point(streamed);
     Splat s;
-#ifdef SHAPED
-    Shape shape;
-    bool takes = point_splat(at.texel, at.level, at.layer, s, shape);
-    emit_splat(s, shape, takes);
-#else
     bool takes = point_splat(at.texel, at.level, at.layer, s);
     emit_splat(s, takes);
-#endif
 }

@@ -9,8 +9,13 @@ int level_side(int n, int level) {
     return (n + (1 << level) - 1) >> level;
 }
 
-// Beside a texel's count of splats below it: the one is that texel's own.
-const uint OWN = 0x80000000u;
+// In the place of the counts of splats below the four children of a texel: it is one splat itself.
+const uvec4 OWN = uvec4(0x80000000u, 0u, 0u, 0u);
+
+// Splats below a texel.
+uint splats_of(uvec4 below) {
+    return below == OWN ? 1u : below.x + below.y + below.z + below.w;
+}
 
 // Where a texel of a level, from 1 on, lies in the pyramid over n x n photons. Levels begin at 2 a (1 - 2^-(level - 1)),
 // a the first one's side, and two rows each for sides that are rounded up.
@@ -32,7 +37,7 @@ layout(set = 0, binding = 17) uniform sampler2DArray pyramid_lean;
 layout(set = 0, binding = 14) uniform sampler2DArray pyramid_valid;
 #endif
 
-#ifdef COUNTED
+#ifdef POINTS
 layout(set = 0, binding = 18) uniform usampler2DArray pyramid_points;
 #endif
 

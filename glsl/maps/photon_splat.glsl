@@ -17,11 +17,17 @@ struct Splat {
     float count;    // photons, divided by it too
     vec2 centre;    // texels of its level
     float diameter; // texels of its level
+    vec2 shape;     // of a long one: its diameter along columns, and rows that its centre moves by a column
     int side;       // texels of its level
     int layer;      // of the image
 };
 
-const Splat NO_SPLAT = Splat(vec3(0.0), 0.0, vec2(0.0), 1.0, 0, 0);
+// The side of the square that holds all of it, texels.
+float reach_of(float diameter, vec2 shape) {
+    return max(diameter, shape.x + abs(shape.y) * diameter);
+}
+
+const Splat NO_SPLAT = Splat(vec3(0.0), 0.0, vec2(0.0), 1.0, vec2(1.0, 0.0), 0, 0);
 
 bool land(vec4 hit, float normal, out Landed l) {
     return landing_of(hit, normal, push.light, l);
@@ -60,7 +66,7 @@ bool splat_of(Landed l, vec3 flux, float diameter, out Splat s) {
     float d = splat_diameter(scale * diameter);
     float norm = splat_norm(p.x, d, side) * splat_norm(p.y, d, side);
     if (!(norm > 0.0)) return false;
-    s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);
+    s = Splat(flux / norm, 1.0 / norm, p, d, vec2(d, 0.0), side, layer);
     return true;
 }
 

@@ -5,10 +5,10 @@
 // How many splats come before each texel of the topmost level, and after the last of them, by a prefix sum over their
 // counts; with that the work groups of the dispatch over all of them. One work group.
 
-#define COUNTED
+#define POINTS
 #include "maps/levels.glsl"
+#include "shared/prefix.glsl"
 
-const uint GROUP = 256u;
 const uint SPLATS = 64u;  // of a work group of the dispatch
 const uint WIDE = 32768u; // its groups along the first axis, at most
 
@@ -22,32 +22,23 @@ layout(push_constant) uniform Push {
 layout(set = 0, binding = 19, scalar) writeonly buffer Before { uint data[]; } maps_before;
 layout(set = 0, binding = 20, scalar) writeonly buffer Rows { uvec4 data[]; } maps_rows;
 
-shared uint sums[GROUP];
-
 uint points_of(uint at) {
     uint side = uint(level_side(photons_side(), push.level)), row = at / side;
-    return texelFetch(pyramid_points, above(ivec2(at % side, row % side), push.level, int(row / side)), 0).r & ~OWN;
+    return splats_of(texelFetch(pyramid_points, above(ivec2(at % side, row % side), push.level, int(row / side)), 0));
 }
 
 void main() {
-    uint own = gl_LocalInvocationIndex, texels = uint(maps_before.data.length()) - 1u;
-    uint each = (texels + GROUP - 1u) / GROUP, first = min(own * each, texels), last = min(first + each, texels);
+    const uint texels = TEXELS; // a buffer may be longer than its content
+    uint own = gl_LocalInvocationIndex;
+    uint each = (texels + PREFIX_GROUP - 1u) / PREFIX_GROUP, first = min(own * each, texels), last = min(first + each, texels);
     uint sum = 0u;
     for (uint at = first; at < last; at++) sum += points_of(at);
-    sums[own] = sum;
-    barrier();
-    for (uint step = 1u; step < GROUP; step *= 2u) {
-        uint more = own >= step ? sums[own - step] : 0u;
-        barrier();
-        sums[own] += more;
-        barrier();
-    }
-    uint before = sums[own] - sum;
+    uint before = prefix_before(sum);
     for (uint at = first; at < last; at++) {
         maps_before.data[at] = before;
         before += points_of(at);
     }
-    if (own != GROUP - 1u) return;
+    if (own != PREFIX_GROUP - 1u) return;
     maps_before.data[texels] = before;
     uint groups = (before + SPLATS - 1u) / SPLATS;
     maps_rows.data[push.row] = uvec4(min(groups, WIDE), (groups + WIDE - 1u) / WIDE, 1u, before);

@@ -3,30 +3,40 @@
 #define POINTS_SPLAT_GLSL
 
 #include "maps/varying.glsl"
-#ifdef SHAPED
+#ifdef ELLIPTIC
+#include "maps/elliptic.glsl"
+#endif
+#ifdef EXACT
 #include "maps/shape.glsl"
+
+// Of a cluster with exact books.
+bool cluster_splat(ivec3 at, out Splat s) {
+    vec4 flux = texelFetch(pyramid_flux, at, 0), mean = texelFetch(pyramid_mean, at, 0);
+    int layer = layer_of_place(flux.a);
+    if (push.diameter > 1.0) {
+        vec3 spread = vec3(mean.zw, texelFetch(pyramid_lean, at, 0).r);
+        if (shaped_splat_of(mean.xy, flux.rgb, layer, spread, push.diameter, s)) return true;
+    }
+    Landed l = Landed(vec3(0.0), vec3(0.0), 0u, mean.xy / float(push.side), layer);
+    return splat_of(l, flux.rgb, push.diameter, s);
+}
 #endif
 
-#ifndef EXACT
-// A cluster of 4^i merged photons at level i stands for so many alike (Wyman 2008, section 3.2), also where some of them
-// were invalid.
+// False if no map takes it, or it is dropped. A cluster of 4^i merged photons at level i stands for so many alike (Wyman
+// 2008, section 3.2), also where some of them were invalid.
 bool point_splat(ivec2 texel, int level, int layer, out Splat s) {
+    s = NO_SPLAT;
+#ifdef EXACT
+    if (level > 0) return cluster_splat(above(texel, level, layer), s);
+#endif
     vec4 flux = flux_of(texel, level, layer);
     Landed l;
-    s = NO_SPLAT;
     if (!land(hit_of(texel, level, layer), flux.w, l)) return false;
     vec3 total = photon_flux(flux.rgb) * float(1 << (2 * level));
+#ifdef ELLIPTIC
+    if (elliptic_splat_of(l, total, texel, layer, s)) return true;
+#endif
     return splat_of(l, total, splat_size(l, texel, level, layer), s);
 }
-#else
-bool point_splat(ivec2 texel, int level, int layer, out Splat s, out Shape shape) {
-    s = NO_SPLAT;
-    shape = Shape(push.diameter, 0.0);
-    if (level > 0) return shaped_splat_of(cluster_at(texel, level, layer), push.diameter, s, shape);
-    vec4 flux = flux_at(texel, layer);
-    Landed l;
-    return land(hit_at(texel, layer), flux.w, l) && splat_of(l, photon_flux(flux.rgb), push.diameter, s);
-}
-#endif
 
 #endif

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 
 // A level of the pyramid over the photons from the one below: with MERGE the mean of what is valid, as hardware makes mip
-// maps (receiver and normal are the first one's); else whether anything is. With COUNTED also how many splats are below
-// each texel: one and OWN, where with CONVERGE its children converge, else those of its children.
+// maps (receiver and normal are the first one's); else whether anything is. With POINTS also how many splats are below
+// each child of a texel, or, where with CONVERGE its children converge, that it is one itself.
 
 #define PYRAMID_WRITTEN
 #include "maps/levels.glsl"
@@ -21,8 +21,8 @@ layout(set = 0, binding = 15, rgba32f) uniform image2DArray pyramid_flux;
 #else
 layout(set = 0, binding = 14, r32f) uniform image2DArray pyramid_valid;
 #endif
-#ifdef COUNTED
-layout(set = 0, binding = 18, r32ui) uniform uimage2DArray pyramid_points;
+#ifdef POINTS
+layout(set = 0, binding = 18, rgba32ui) uniform uimage2DArray pyramid_points;
 #endif
 
 ivec3 place(ivec2 at, int level, int layer) {
@@ -35,8 +35,8 @@ void main() {
     int below = push.level - 1;
     vec4 hit = vec4(0.0), flux = vec4(0.0);
     float count = 0.0;
-#ifdef COUNTED
-    uint points = 0u;
+#ifdef POINTS
+    uvec4 points = uvec4(0u);
 #endif
 #ifdef CONVERGE
     ivec3 common_texel = NO_TEXEL;
@@ -56,11 +56,11 @@ void main() {
         if (h.w == 0.0) converges = false;
 #endif
         if (h.w == 0.0) continue;
-#ifdef COUNTED
+#ifdef POINTS
 #ifdef FROM_PHOTONS
-        points++;
+        points[k] = 1u;
 #else
-        points += imageLoad(pyramid_points, place(at, below, texel.z)).r & ~OWN;
+        points[k] = splats_of(imageLoad(pyramid_points, place(at, below, texel.z)));
 #endif
 #endif
 #ifdef MERGE
@@ -82,11 +82,11 @@ void main() {
         count += 1.0;
     }
     ivec3 to = place(texel.xy, push.level, texel.z);
-#ifdef COUNTED
+#ifdef POINTS
 #ifdef CONVERGE
-    if (converges && count > 0.0) points = OWN | 1u;
+    if (converges && count > 0.0) points = OWN;
 #endif
-    imageStore(pyramid_points, to, uvec4(points));
+    imageStore(pyramid_points, to, points);
 #endif
 #ifdef MERGE
     float share = count > 0.0 ? 1.0 / count : 0.0;

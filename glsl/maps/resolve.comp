@@ -11,7 +11,11 @@ layout(push_constant, scalar) uniform Push {
 
 layout(set = 0, binding = 10, scalar) buffer MapSums { uint data[]; } maps_sums;
 layout(set = 0, binding = 12, scalar) readonly buffer MapUnit { float per_watt, watts; } maps_unit;
+#ifdef DRAWN
+layout(set = 0, binding = 11, rgba32f) uniform image2DArray maps_map; // holds what was drawn
+#else
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2DArray maps_map;
+#endif
 
 void main() {
     ivec3 texel = ivec3(gl_GlobalInvocationID);
@@ -24,5 +28,8 @@ void main() {
         maps_sums.data[word + 2u * band] = 0u;
         maps_sums.data[word + 2u * band + 1u] = 0u;
     }
+#ifdef DRAWN
+    flux += imageLoad(maps_map, texel).rgb;
+#endif
     imageStore(maps_map, texel, vec4(flux, 0.0));
 }

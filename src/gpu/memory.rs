@@ -29,8 +29,6 @@ pub enum Format {
     Rgba32u,
     /// Two words.
     Rg32u,
-    /// One word.
-    R32u,
     /// One float32.
     R32f,
     /// Float32 depth.
@@ -43,7 +41,7 @@ impl Format {
         match self {
             Self::Rgba32f | Self::Rgba32u => 16,
             Self::Rgba16f | Self::Rg32u => 8,
-            Self::R32f | Self::R32u | Self::Depth32f => 4,
+            Self::R32f | Self::Depth32f => 4,
         }
     }
 
@@ -54,7 +52,6 @@ impl Format {
             Self::Rgba16f => "rgba16f",
             Self::Rgba32u => "rgba32ui",
             Self::Rg32u => "rg32ui",
-            Self::R32u => "r32ui",
             Self::R32f => "r32f",
             Self::Depth32f => "depth32f",
         }
@@ -65,7 +62,7 @@ impl Format {
         match self {
             Self::Rgba32f | Self::Rgba16f | Self::Rgba32u => 4,
             Self::Rg32u => 2,
-            Self::R32f | Self::R32u | Self::Depth32f => 1,
+            Self::R32f | Self::Depth32f => 1,
         }
     }
 
@@ -75,7 +72,6 @@ impl Format {
             Self::Rgba16f => vk::Format::R16G16B16A16_SFLOAT,
             Self::Rgba32u => vk::Format::R32G32B32A32_UINT,
             Self::Rg32u => vk::Format::R32G32_UINT,
-            Self::R32u => vk::Format::R32_UINT,
             Self::R32f => vk::Format::R32_SFLOAT,
             Self::Depth32f => vk::Format::D32_SFLOAT,
         }

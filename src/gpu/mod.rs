@@ -34,7 +34,7 @@ pub use loader::{LayerInfo, LoaderInfo, inspect_loader, try_validation};
 pub use memory::{Buffer, Format, Image};
 pub use plan::{
     Binding, Blend, BufferDecl, BufferId, Depth, Draw, Groups, ImageDecl, ImageId, LeftOut, Lifetime, PassBuilder,
-    PassDecl, Phase, Plan, Resource, Stream, Target, Topology, Work,
+    PassDecl, Phase, Plan, Resource, Row, Stream, Target, Topology, Work,
 };
 pub use program::{Program, Reused};
 pub use reflect::{BlockMember, Reflection};

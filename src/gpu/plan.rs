@@ -165,16 +165,20 @@ pub struct Stream {
 pub enum Groups {
     /// So many.
     Fixed([u32; 3]),
-    /// As many as the device has counted (an indirect dispatch).
-    Counted {
-        /// Rows of [`Self::WORDS`] words: groups along each axis, and the points that they share.
-        rows: BufferId,
-        /// Which of them.
-        row: u32,
-    },
+    /// As many as the device has counted (an indirect dispatch): groups along each axis, and the points that they share.
+    Counted(Row),
 }
 
-impl Groups {
+/// A row of words that a pass before counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Rows of [`Self::WORDS`] words.
+    pub rows: BufferId,
+    /// Which of them.
+    pub row: u32,
+}
+
+impl Row {
     /// Words of a row.
     pub const WORDS: usize = 4;
     /// Bytes of a row.
@@ -210,6 +214,8 @@ pub enum Work {
         topology: Topology,
         /// The draws.
         draws: Vec<Draw>,
+        /// A draw of as many vertices, instances, first vertex and first instance as the device has counted.
+        counted: Option<Row>,
         /// A stream to draw after them: its vertices are attribute 0.
         drawn: Option<Stream>,
         /// What is streamed out.

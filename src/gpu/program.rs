@@ -14,7 +14,7 @@ use super::{
     error::{GpuError, Named},
     memory::{Buffer, Format, Image},
     pipeline::{Pipeline, RasterState, Stage},
-    plan::{BufferDecl, BufferId, Groups, ImageId, PassDecl, Phase, Plan, Work},
+    plan::{BufferDecl, BufferId, Groups, ImageId, PassDecl, Phase, Plan, Row, Work},
     record::{self, buffer_barrier, image_barrier},
     shader::{ShaderKind, Sources},
     staging::Staging,
@@ -206,9 +206,9 @@ impl Program {
     fn groups(&self, groups: &Groups) -> Result<([u32; 3], Option<u64>), GpuError> {
         match *groups {
             Groups::Fixed(groups) => Ok((groups, None)),
-            Groups::Counted { rows, row } => {
+            Groups::Counted(Row { rows, row }) => {
                 let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read_buffer(rows)?);
-                let first = row as usize * Groups::WORDS;
+                let first = row as usize * Row::WORDS;
                 Ok(([words[first], words[first + 1], words[first + 2]], Some(u64::from(words[first + 3]))))
             }
         }
@@ -286,7 +286,6 @@ impl Program {
                     [a as f32, b as f32, f32::from_bits(u), f32::from_bits(v)]
                 })
                 .collect(),
-            Format::R32u => memory.chunks_exact(4).map(|b| word(b) as f32).collect(),
             Format::Rgba16f => {
                 memory.chunks_exact(2).map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()).collect()
             }

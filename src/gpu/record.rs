@@ -8,7 +8,7 @@ use super::{
     device::Shared,
     memory::{Buffer, Image},
     pipeline::{Pipeline, descriptor_type},
-    plan::{BufferId, Groups, ImageId, PassDecl, Resource, Stream, Work},
+    plan::{BufferId, Groups, ImageId, PassDecl, Resource, Row, Stream, Work},
     program::Program,
     reflect::BindingKind,
     timer::Timer,
@@ -113,9 +113,9 @@ pub(super) unsafe fn pass(program: &Program, index: usize, slot: usize, timer: &
         }
         match &pass.work {
             Work::Compute { groups: Groups::Fixed([x, y, z]), .. } => device.cmd_dispatch(commands, *x, *y, *z),
-            Work::Compute { groups: Groups::Counted { rows, row }, .. } => {
-                let rows = program.buffers[rows.0].handle;
-                device.cmd_dispatch_indirect(commands, rows, u64::from(*row) * Groups::BYTES);
+            Work::Compute { groups: Groups::Counted(row), .. } => {
+                let rows = program.buffers[row.rows.0].handle;
+                device.cmd_dispatch_indirect(commands, rows, u64::from(row.row) * Row::BYTES);
             }
             Work::Copy { copies } => copies.iter().for_each(|&copied| copy(program, copied)),
             Work::Raster { .. } => draw(program, pass),
@@ -176,8 +176,8 @@ fn resource_barriers(program: &Program, pass: &PassDecl) {
         }
     }
     pass.attributes.iter().for_each(|(b, _)| buffer(b.0, Access::VertexAttributes));
-    if let Work::Compute { groups: Groups::Counted { rows, .. }, .. } = &pass.work {
-        buffer(rows.0, Access::Indirect);
+    if let Work::Compute { groups: Groups::Counted(row), .. } | Work::Raster { counted: Some(row), .. } = &pass.work {
+        buffer(row.rows.0, Access::Indirect);
     }
     if let Work::Copy { copies } = &pass.work {
         for (from, to) in copies {
@@ -275,7 +275,7 @@ unsafe fn begin_stream(program: &Program, stream: &Stream) {
 /// # Safety
 /// The command buffer is recording, outside rendering, with the pass's pipeline bound.
 unsafe fn draw(program: &Program, pass: &PassDecl) {
-    let Work::Raster { targets, depth, draws, drawn, streamed, .. } = &pass.work else { return };
+    let Work::Raster { targets, depth, draws, counted, drawn, streamed, .. } = &pass.work else { return };
     let load = |clears: bool| if clears { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
     let colors: Vec<_> = targets
         .iter()
@@ -322,6 +322,10 @@ unsafe fn draw(program: &Program, pass: &PassDecl) {
         }
         for d in draws {
             device.cmd_draw(commands, d.vertices, d.instances, d.first_vertex, d.first_instance);
+        }
+        if let Some(row) = counted {
+            let rows = program.buffers[row.rows.0].handle;
+            device.cmd_draw_indirect(commands, rows, u64::from(row.row) * Row::BYTES, 1, Row::BYTES as u32);
         }
         if let Some((stream, (_, format))) = drawn.as_ref().zip(pass.attributes.first()) {
             let counter = program.buffers[stream.counter.0].handle;

@@ -96,7 +96,7 @@ impl PassRow {
             Work::Compute { shader, groups, local } => {
                 let (kind, groups) = match groups {
                     Groups::Fixed(groups) => ("compute", *groups),
-                    Groups::Counted { .. } => ("counted", [0; 3]),
+                    Groups::Counted(_) => ("counted", [0; 3]),
                 };
                 (kind, std::slice::from_ref(shader), groups, *local, [].as_slice())
             }
@@ -104,10 +104,14 @@ impl PassRow {
                 let [width, height] = copies.first().map_or([0, 0], |(from, _)| plan.image_extent(*from));
                 ("copy", [].as_slice(), [width, height, 1], 0, [].as_slice())
             }
-            Work::Raster { shaders, targets, depth, draws, drawn, .. } => {
+            Work::Raster { shaders, targets, depth, draws, counted, drawn, .. } => {
                 let target = targets.first().map(|t| t.image).or(depth.as_ref().map(|d| d.image));
                 let [width, height] = target.map_or([0, 0], |t| plan.image_extent(t));
-                let kind = if drawn.is_some() { "stream" } else { "raster" };
+                let kind = match (drawn, counted) {
+                    (Some(_), _) => "stream",
+                    (_, Some(_)) => "counted raster",
+                    _ => "raster",
+                };
                 (kind, shaders.as_slice(), [width, height, 1], 0, draws.as_slice())
             }
         };
@@ -129,6 +133,7 @@ impl PassRow {
         match (self.kind, self.draws) {
             ("compute", _) => format!("{x}x{y}x{z} groups of {}", self.local),
             ("counted", _) => format!("as many groups of {} as are counted", self.local),
+            ("counted raster", _) => format!("{x}x{y}, 1 draw of what is counted"),
             ("copy", _) => format!("{x}x{y} to buffers"),
             ("stream", _) => format!("{x}x{y}, 1 draw of the stream"),
             (_, 1) => format!("{x}x{y}, 1 draw of {} vertices", self.vertices),

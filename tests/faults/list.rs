@@ -1,6 +1,6 @@
 //! The faults: each as it could slip into the shipped shaders by one careless line.
 
-use crate::checks::{caustic::*, floor::*, light::*};
+use crate::checks::{caustic::*, floor::*, light::*, merged::*};
 use crate::patch::Fault;
 
 pub static FAULTS: &[Fault] = &[
@@ -21,8 +21,8 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "colour bands swapped",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);",
-        new: "s = Splat(flux.bgr / norm, 1.0 / norm, p, d, side, layer);",
+        old: "s = Splat(flux / norm, 1.0 / norm, p, d, vec2(d, 0.0), side, layer);",
+        new: "s = Splat(flux.bgr / norm, 1.0 / norm, p, d, vec2(d, 0.0), side, layer);",
         check: &FLAT_WATER,
     },
     Fault {
@@ -63,22 +63,22 @@ pub static FAULTS: &[Fault] = &[
     Fault {
         name: "splat weights sum to 1.02",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);",
-        new: "s = Splat(1.02 * flux / norm, 1.0 / norm, p, d, side, layer);",
+        old: "s = Splat(flux / norm, 1.0 / norm, p, d, vec2(d, 0.0), side, layer);",
+        new: "s = Splat(1.02 * flux / norm, 1.0 / norm, p, d, vec2(d, 0.0), side, layer);",
         check: &DEPOSITED,
     },
     Fault {
         name: "one photon in fifty lost",
         file: "maps/gather_fixed.comp",
-        old: "if (any(greaterThanEqual(texel,",
-        new: "if ((texel.x + 7 * texel.y) % 50 == 0 || any(greaterThanEqual(texel,",
+        old: "if (takes) deposit(s);",
+        new: "if (takes && (texel.x + 7 * texel.y) % 50 != 0) deposit(s);",
         check: &DEPOSITED,
     },
     Fault {
         name: "NaN in the splats",
         file: "maps/photon_splat.glsl",
-        old: "s = Splat(flux / norm, 1.0 / norm, p, d, side, layer);",
-        new: "s = Splat(flux / sqrt(-norm), 1.0 / norm, p, d, side, layer);",
+        old: "s = Splat(flux / norm, 1.0 / norm, p, d, vec2(d, 0.0), side, layer);",
+        new: "s = Splat(flux / sqrt(-norm), 1.0 / norm, p, d, vec2(d, 0.0), side, layer);",
         check: &DEPOSITED,
     },
     Fault {
@@ -143,5 +143,61 @@ pub static FAULTS: &[Fault] = &[
         old: "way = bend * straight_through(e) + (1.0 - bend) * inward;",
         new: "way = bend * inward + (1.0 - bend) * straight_through(e);",
         check: &ONE_SHOT,
+    },
+    Fault {
+        name: "a cluster's covariance dropped",
+        file: "maps/shape.glsl",
+        old: "vec3 sum = covariance / LOWERED",
+        new: "vec3 sum = 0.01 * covariance",
+        check: &MOMENTS,
+    },
+    Fault {
+        name: "a cluster's spread between its parts dropped",
+        file: "maps/clusters.glsl",
+        old: "share * (1.0 - share) * between",
+        new: "0.0 * between",
+        check: &MOMENTS,
+    },
+    Fault {
+        name: "a cluster where its first photon lands",
+        file: "maps/clusters.glsl",
+        old: "a.mean + share * apart",
+        new: "a.mean + 0.0 * apart",
+        check: &MOMENTS,
+    },
+    Fault {
+        name: "a cluster's flux the mean of its parts'",
+        file: "maps/clusters.glsl",
+        old: "return Cluster(a.flux + b.flux,",
+        new: "return Cluster(0.5 * (a.flux + b.flux),",
+        check: &BOOKS,
+    },
+    Fault {
+        name: "splats before a child not passed over",
+        file: "maps/descend.glsl",
+        old: "child++) rest -= below[child];",
+        new: "child++) {}",
+        check: &BOOKS,
+    },
+    Fault {
+        name: "large splats drawn and summed",
+        file: "maps/large_mark.glsl",
+        old: "return takes && !large;",
+        new: "return takes;",
+        check: &LARGE,
+    },
+    Fault {
+        name: "the wrong one of a group's large splats",
+        file: "maps/gather_large.vert",
+        old: "word &= word - 1u;",
+        new: "word &= word;",
+        check: &LARGE,
+    },
+    Fault {
+        name: "ellipses half as far as neighbours",
+        file: "maps/elliptic.glsl",
+        old: "change = has_after && has_before ? 0.5 * (after - before)",
+        new: "change = has_after && has_before ? 0.25 * (after - before)",
+        check: &EVENLY,
     },
 ];

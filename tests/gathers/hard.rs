@@ -8,8 +8,17 @@ use super::{
     difference,
 };
 
-const COLUMNS: [&str; 7] =
-    ["copy", "fetch", "hierarchical", "combine-last", "combine-all", "varying-multires", "varying-single"];
+const COLUMNS: [&str; 9] = [
+    "copy",
+    "fetch",
+    "hierarchical",
+    "combine-last",
+    "combine-all",
+    "varying-multires",
+    "varying-single",
+    "combine-exact",
+    "elliptic",
+];
 /// Splats of a texel are added in another order: float32 sums of up to some hundred addends.
 const ORDER: f64 = 1e-6;
 

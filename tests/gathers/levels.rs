@@ -72,7 +72,7 @@ fn points_of_every_level_are_those_of_the_listings() {
 
 /// Splats that the device counts below each texel of each level from 1 on, by layer.
 fn below(renderer: &Renderer, side: usize, levels: usize) -> Vec<Vec<Vec<u32>>> {
-    /// Beside a count: the one is the texel's own.
+    /// In the place of the counts of the children: the texel is one splat itself.
     const OWN: f32 = 2_147_483_648.0;
     let Dump::Image { extent, layers, .. } = renderer.dump("maps/pyramid.points").unwrap() else { panic!("an image") };
     let first_row = |level: usize| {
@@ -82,7 +82,11 @@ fn below(renderer: &Renderer, side: usize, levels: usize) -> Vec<Vec<Vec<u32>>> 
     let of_level = |texels: &[f32], level: usize| -> Vec<u32> {
         let side = side.div_ceil(1 << level);
         let places = (0..side * side).map(|at| (first_row(level) + at / side) * extent[0] as usize + at % side);
-        places.map(|place| if texels[place] >= OWN { 1 } else { texels[place] as u32 }).collect()
+        let children = places.map(|place| &texels[4 * place..][..4]);
+        // The dump has two numbers, and two words as float32.
+        children
+            .map(|c| if c[0] == OWN { 1 } else { c[0] as u32 + c[1] as u32 + c[2].to_bits() + c[3].to_bits() })
+            .collect()
     };
     layers.iter().map(|texels| (1..=levels).map(|level| of_level(texels, level)).collect()).collect()
 }

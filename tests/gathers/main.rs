@@ -3,6 +3,7 @@
 mod cells;
 #[path = "../common/mod.rs"]
 mod common;
+mod exact;
 mod hard;
 mod levels;
 mod model;

@@ -38,19 +38,20 @@ fn spread(picture: &Picture) -> (f64, f64) {
 fn splats_of_unbent_light_meet_without_gaps() {
     let gpu = gpu();
     for side in ["48", "37", "23"] {
-        let [fixed, single, multires, area, lens] = [
+        let [fixed, single, multires, area, lens, elliptic] = [
             [("maps.splat", "fixed"), ("maps.target", "single"), ("maps.footprint", "distance")],
             [("maps.splat", "varying"), ("maps.target", "single"), ("maps.footprint", "distance")],
             [("maps.splat", "varying"), ("maps.target", "multires"), ("maps.footprint", "distance")],
             [("maps.splat", "varying"), ("maps.target", "single"), ("maps.footprint", "area")],
             [("maps.splat", "thin-lens"), ("maps.target", "single"), ("maps.footprint", "distance")],
+            [("maps.splat", "elliptic"), ("maps.target", "single"), ("maps.footprint", "distance")],
         ]
         .map(|set| rendered(&gpu, "2.0", &[set.as_slice(), &[("light.side", side)]].concat()));
         let gaps = spread(&fixed).1;
         assert!(gaps > 5.0 * EVEN, "or the others show nothing: {gaps}");
         let between = [("maps.splat", "interpolated"), ("maps.traverse", "fetch"), ("light.side", side)];
         let between = rendered(&gpu, "2.0", &between);
-        for picture in [&single, &multires, &area, &lens, &between] {
+        for picture in [&single, &multires, &area, &lens, &elliptic, &between] {
             let (mean, uneven) = spread(picture);
             println!("{side}²: uneven by {uneven:.4}, fixed by {gaps:.3}");
             assert!(uneven < EVEN, "{side}² photons: {uneven}");

@@ -1,8 +1,8 @@
 //! A pass as one sentence, from [`Plan::pass`] to a dispatch, a copy or draws.
 
 use super::{
-    Binding, Blend, BufferId, Depth, Draw, Groups, ImageId, PassDecl, Phase, Plan, Resource, Stream, Target, Topology,
-    Work,
+    Binding, Blend, BufferId, Depth, Draw, Groups, ImageId, PassDecl, Phase, Plan, Resource, Row, Stream, Target,
+    Topology, Work,
 };
 use crate::gpu::{access::Access, memory::Format};
 
@@ -142,10 +142,9 @@ impl PassBuilder<'_> {
         self.compute(shader, Groups::Fixed(groups), local);
     }
 
-    /// Ends the sentence with a dispatch of as many work groups as a pass before wrote to a row of `rows`
-    /// ([`Groups::Counted`]).
-    pub fn dispatch_counted(self, shader: &str, rows: BufferId, row: u32, local: u32) {
-        self.compute(shader, Groups::Counted { rows, row }, local);
+    /// Ends the sentence with a dispatch of as many work groups as a pass before counted.
+    pub fn dispatch_counted(self, shader: &str, row: Row, local: u32) {
+        self.compute(shader, Groups::Counted(row), local);
     }
 
     fn compute(mut self, shader: &str, groups: Groups, local: u32) {
@@ -168,22 +167,35 @@ impl PassBuilder<'_> {
 
     /// Ends the sentence with draws.
     pub fn draw(self, shaders: &[&str], topology: Topology, draws: Vec<Draw>) {
-        self.raster(shaders, topology, draws, None);
+        self.raster(shaders, topology, draws, None, None);
+    }
+
+    /// Ends the sentence with a draw of as many points as a pass before counted.
+    pub fn draw_counted(self, shaders: &[&str], row: Row) {
+        self.raster(shaders, Topology::Points, Vec::new(), Some(row), None);
     }
 
     /// Ends the sentence with a draw of what was streamed out before, as many points as the counter says: attribute 0,
     /// of that format.
     pub fn draw_stream(self, shaders: &[&str], from: Stream, format: Format) {
-        self.attribute(from.vertices, format).raster(shaders, Topology::Points, Vec::new(), Some(from));
+        self.attribute(from.vertices, format).raster(shaders, Topology::Points, Vec::new(), None, Some(from));
     }
 
-    fn raster(mut self, shaders: &[&str], topology: Topology, draws: Vec<Draw>, drawn: Option<Stream>) {
+    fn raster(
+        mut self,
+        shaders: &[&str],
+        topology: Topology,
+        draws: Vec<Draw>,
+        counted: Option<Row>,
+        drawn: Option<Stream>,
+    ) {
         self.pass.work = Work::Raster {
             shaders: shaders.iter().map(|s| s.to_string()).collect(),
             targets: self.targets,
             depth: self.depth,
             topology,
             draws,
+            counted,
             drawn,
             streamed: self.streamed,
         };

@@ -19,8 +19,9 @@ pub static GATHER: Choice = Choice {
         "varying-single",
         "cells",
         "combine-exact",
+        "elliptic",
     ],
-    doc: "a column of the paper's Table 3, or our cells or combine-exact, which set the four axes below; own: as the axes say",
+    doc: "a column of the paper's Table 3, or our cells, combine-exact or elliptic, which set the four axes below; own: as the axes say",
 };
 
 pub static TRAVERSE: Choice = Choice {
@@ -44,10 +45,10 @@ pub static MERGE: Choice = Choice {
 pub static SPLAT: Choice = Choice {
     key: "maps.splat",
     default: "fixed",
-    words: &["fixed", "varying", "thin-lens", "interpolated", "cells"],
+    words: &["fixed", "varying", "thin-lens", "interpolated", "elliptic", "cells"],
     doc: "how large splats are: fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
           its Fig. 7 compares: thin-lens: by where neighbouring rays come nearest; interpolated: of four sizes those that \
-          a dozen photons fall into; ours: cells: no splats: the light between the corners of a photon's texel, exactly where \
+          a dozen photons fall into; ours: elliptic: ellipses that reach to the photons beside them; cells: no splats: the light between the corners of a photon's texel, exactly where \
           it lands",
 };
 
@@ -69,7 +70,7 @@ pub struct Axes<'s> {
 
 /// The columns of Table 3, and ours. What its varying splats ran behind the paper does not say; its times are about twice those of
 /// combine-all, as its text says.
-const PRESETS: [(&str, [&str; 4]); 9] = [
+const PRESETS: [(&str, [&str; 4]); 10] = [
     ("copy", ["copy", "none", "fixed", "single"]),
     ("fetch", ["fetch", "none", "fixed", "single"]),
     ("hierarchical", ["hierarchical", "none", "fixed", "single"]),
@@ -79,6 +80,7 @@ const PRESETS: [(&str, [&str; 4]); 9] = [
     ("varying-single", ["hierarchical", "all", "varying", "single"]),
     ("cells", ["compute", "none", "cells", "single"]),
     ("combine-exact", ["compute", "exact", "fixed", "single"]),
+    ("elliptic", ["compute", "none", "elliptic", "single"]),
 ];
 
 const KEYS: [&Choice; 4] = [&TRAVERSE, &MERGE, &SPLAT, &TARGET];
@@ -121,14 +123,14 @@ impl<'s> Axes<'s> {
                 let what = format!("maps.splat=cells with maps.merge={merge}");
                 refused(what, "cells are no points that could fall together", "set maps.merge=none")
             }
-            Self { traverse: "copy", splat: splat @ ("varying" | "thin-lens"), .. } => refused(
+            Self { traverse: "copy", splat: splat @ ("varying" | "thin-lens" | "elliptic"), .. } => refused(
                 format!("maps.splat={splat} with maps.traverse=copy"),
                 "a vertex knows nothing of the photons beside it",
                 "set maps.traverse=fetch",
             ),
-            Self { splat: "thin-lens", merge: "last" | "all", .. } => refused(
-                format!("maps.splat=thin-lens with maps.merge={}", axes.merge),
-                "a cluster leaves no one place of the glass",
+            Self { splat: splat @ ("thin-lens" | "elliptic"), merge: "last" | "all", .. } => refused(
+                format!("maps.splat={splat} with maps.merge={}", axes.merge),
+                "a cluster leaves no one place of the glass, and lies beside no one photon",
                 "set maps.merge=none",
             ),
             Self { splat: "interpolated", traverse: "compute", .. } => refused(
@@ -136,7 +138,7 @@ impl<'s> Axes<'s> {
                 "it counts photons where they are blended",
                 "set maps.traverse=fetch",
             ),
-            Self { splat: splat @ ("fixed" | "interpolated"), target: "multires", .. } => refused(
+            Self { splat: splat @ ("fixed" | "interpolated" | "elliptic"), target: "multires", .. } => refused(
                 format!("maps.target=multires with maps.splat={splat}"),
                 "its splats have no level each",
                 "set maps.splat=varying",
@@ -195,11 +197,13 @@ mod tests {
 
     #[test]
     fn what_has_no_meaning_is_refused_with_the_reason() {
-        let refused: [&[(&str, &str)]; 11] = [
+        let refused: [&[(&str, &str)]; 13] = [
             &[("maps.gather", "fetch"), ("maps.traverse", "hierarchical")],
             &[("maps.merge", "last"), ("maps.traverse", "fetch")],
             &[("maps.merge", "exact"), ("maps.splat", "varying")],
             &[("maps.merge", "all"), ("maps.splat", "cells")],
+            &[("maps.merge", "last"), ("maps.splat", "elliptic")],
+            &[("maps.target", "multires"), ("maps.splat", "elliptic")],
             &[("maps.traverse", "copy"), ("maps.splat", "varying")],
             &[("maps.target", "multires")],
             &[("maps.target", "multires"), ("maps.splat", "interpolated"), ("maps.traverse", "fetch")],

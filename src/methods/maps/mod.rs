@@ -6,6 +6,7 @@ mod axes;
 mod cells;
 mod copied;
 mod hierarchy;
+mod large;
 mod points;
 mod pyramid;
 mod sparse;
@@ -18,6 +19,7 @@ use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
 use cells::Cells;
 use copied::{COPY, Vertices};
 use hierarchy::Hierarchy;
+use large::{Large, RASTER_FROM};
 use points::Points;
 use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
 use sums::Fixed;
@@ -62,7 +64,7 @@ static TOP: Whole = Whole {
 static SPREAD: Real = Real {
     key: "maps.spread",
     unit: "",
-    default: Some(1.0),
+    default: Some(4.0),
     range: 0.0..=8.0,
     doc: "with maps.merge = exact, how far photons of a cluster may land from each other, along rows or columns of the map, in \
           standard deviations of a splat (a quarter of maps.splat_size)",
@@ -99,6 +101,7 @@ static SETTINGS: &[Setting] = &[
     Setting::Choice(&SPLAT),
     Setting::Choice(&TARGET),
     Setting::Whole(&SPLAT_SIZE),
+    Setting::Whole(&RASTER_FROM),
     Setting::Choice(&FOOTPRINT),
     Setting::Real(&LEVEL_THRESHOLD),
     Setting::Choice(&LEVEL),
@@ -131,6 +134,7 @@ static CHAIN: &[Link] = &[
         moved_by: &[
             "maps.side",
             "maps.splat_size",
+            "maps.raster_from",
             "maps.gather",
             "maps.traverse",
             "maps.merge",
@@ -230,6 +234,7 @@ impl Method for Maps {
             cells,
             vertices: Vertices::plan(job),
             points: Points::plan(job, axes, &fixed)?,
+            large: Large::plan(job, axes, &fixed),
             fixed,
             hierarchies: Hierarchy::plan(job, axes),
             culls: culls(job.settings, axes),
@@ -240,7 +245,9 @@ impl Method for Maps {
 
 /// Whether a geometry shader discards what is no photon, as a traversal does by itself.
 fn culls(settings: &Settings, axes: Axes<'_>) -> bool {
-    axes.traverse == "fetch" && axes.splat != "interpolated" && settings.choice(&CULL) == "geometry"
+    axes.traverse == "fetch"
+        && !["interpolated", "elliptic"].contains(&axes.splat)
+        && settings.choice(&CULL) == "geometry"
 }
 
 struct PlannedMaps {
@@ -255,6 +262,8 @@ struct PlannedMaps {
     hierarchies: Vec<Hierarchy>,
     /// The same, where a dispatch merges them.
     points: Vec<Points>,
+    /// The same, where large splats are drawn.
+    large: Vec<Large>,
     culls: bool,
     drawn: bool,
 }
@@ -300,7 +309,7 @@ impl Planned for PlannedMaps {
             cells.gather(job, fixed, view, name_of);
             if view + 1 == job.emissions.len() {
                 cells.tally(job, fixed, job.plan.image_decl(self.maps[0]).layers);
-                fixed.resolve(job, self.maps[0], self.splats.side);
+                fixed.resolve(job, self.maps[0], self.splats.side, false);
             }
             return;
         }
@@ -322,17 +331,26 @@ impl Planned for PlannedMaps {
             let photons = job.photons;
             let pass = photons.define(job.plan.pass(&name)).with([self.views()]);
             let pass = self.splats.tell(job.settings, light, at, pass);
+            let clear = first.then_some([0.0; 4]);
             let Some(fixed) = &self.fixed else {
-                self.draw(photons, pass.target_layers(map, first.then_some([0.0; 4]), Blend::Add));
+                self.draw(photons, pass.target_layers(map, clear, Blend::Add));
                 continue;
             };
+            let large = self.large.iter().find(|large| large.side == photons.side);
             let pass = pass.with(photons.fetch(self.splats.columns()));
+            let pass = large.into_iter().fold(pass, |pass, large| large.mark(pass));
             match points {
                 Some(points) => points.gather(fixed, pass, view),
                 None => fixed.gather(pass, [photons.side, photons.layers()]),
             }
+            if let Some(large) = large {
+                large.count(job, points, view as u32, &name_of("maps/large"));
+                let pass = photons.define(job.plan.pass(&name_of("maps/gather.large"))).with([self.views()]);
+                let pass = self.splats.tell(job.settings, light, at, pass).with(photons.fetch(self.splats.columns()));
+                large.draw(pass.target_layers(map, clear, Blend::Add), points, view as u32);
+            }
             if view + 1 == job.emissions.len() {
-                fixed.resolve(job, map, self.splats.side);
+                fixed.resolve(job, map, self.splats.side, large.is_some());
             }
         }
     }

@@ -11,7 +11,7 @@ use super::{
     sums::Fixed,
 };
 use crate::{
-    gpu::{BufferId, Groups, Lifetime, PassBuilder},
+    gpu::{BufferId, Lifetime, PassBuilder, Row},
     passes::{PlanError, light},
 };
 
@@ -23,7 +23,9 @@ const SPLATS: u32 = 64;
 /// The pyramid over the photons, and what its counts sum to. All views of one size share them.
 pub struct Points {
     pub pyramid: Pyramid,
-    /// Splats before each texel of the topmost level, and of all.
+    /// Texels of the topmost level, in all layers.
+    texels: u32,
+    /// Splats before each of them, and of all.
     before: BufferId,
     /// Of each view, the groups of the dispatch and its splats.
     rows: BufferId,
@@ -56,7 +58,7 @@ impl Points {
             });
         }
         let sides = light::sides(job.emissions);
-        let rows = job.emissions.len() as u64 * Groups::BYTES;
+        let rows = job.emissions.len() as u64 * Row::BYTES;
         let rows = job.plan.buffer("maps/points.rows", rows, Lifetime::Frame);
         let all: Vec<Self> = sides.iter().filter_map(|&side| Self::of(job, axes, &sides, side, rows)).collect();
         if all.is_empty() {
@@ -67,10 +69,10 @@ impl Points {
 
     fn of(job: &mut Job<'_>, axes: Axes<'_>, sides: &[u32], side: u32, rows: BufferId) -> Option<Self> {
         let pyramid = Pyramid::of(job, axes, sides, side)?;
-        let texels = u64::from(level_side(side, pyramid.levels)).pow(2) * u64::from(pyramid.layers);
+        let texels = level_side(side, pyramid.levels).pow(2) * pyramid.layers;
         let name = light::sized("maps/points.before", sides, side);
-        let before = job.plan.buffer(&name, 4 * (texels + 1), Lifetime::Frame);
-        Some(Self { pyramid, before, rows })
+        let before = job.plan.buffer(&name, 4 * (u64::from(texels) + 1), Lifetime::Frame);
+        Some(Self { pyramid, texels, before, rows })
     }
 
     /// Counts the splats of a view's photons.
@@ -80,15 +82,26 @@ impl Points {
         let pass = job.photons.define(job.plan.pass(&name_of("maps/points")));
         // How many there are is asked of the photon image.
         let pass = self.pyramid.give(pass.with(job.photons.fetch(&[super::Column::Hit])), &["pyramid_points"]);
+        let pass = pass.define("TEXELS", format!("{}u", self.texels));
         let pass = pass.write("maps_before", self.before).write("maps_rows", self.rows);
         pass.push(&push).dispatch("maps/points.comp", [1, 1, 1], SUMMING);
     }
 
     /// Adds them to the sums.
     pub fn gather(&self, fixed: &Fixed, pass: PassBuilder<'_>, view: usize) {
+        let row = Row { rows: self.rows, row: view as u32 };
+        fixed.give(self.give(pass)).dispatch_counted("maps/gather_points.comp", row, SPLATS);
+    }
+
+    /// Gives a pass what finds splats by their numbers, and makes them.
+    pub fn give<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
         let pass = self.pyramid.give(self.pyramid.define(pass), &SPLATTED);
-        let pass = self.pyramid.give(pass, &["pyramid_points"]).define("TOP", self.pyramid.levels);
-        let pass = fixed.give(pass).read("maps_before", self.before);
-        pass.dispatch_counted("maps/gather_points.comp", self.rows, view as u32, SPLATS);
+        self.number(self.pyramid.give(pass, &["pyramid_points"]))
+    }
+
+    /// Gives a pass how many there are.
+    pub fn number<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let pass = pass.define("TOP", self.pyramid.levels).define("TEXELS", format!("{}u", self.texels));
+        pass.read("maps_before", self.before)
     }
 }

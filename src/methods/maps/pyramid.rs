@@ -101,7 +101,7 @@ impl Pyramid {
             ],
         };
         if counted {
-            columns.push(("pyramid_points", Format::R32u));
+            columns.push(("pyramid_points", Format::Rgba32u));
         }
         // As `pyramid_place` of `glsl/maps/levels.glsl` lays them out.
         let extent = [level_side(side, 1), 2 * (level_side(side, 1) + levels)];
@@ -157,7 +157,7 @@ impl Pyramid {
             Merge::Last | Merge::All => pass.define("MERGE", 1),
             Merge::Exact => pass.define("EXACT", 1).define("SHAPED", 1),
         };
-        if self.counted { pass.define("COUNTED", 1) } else { pass }
+        if self.counted { pass.define("POINTS", 1) } else { pass }
     }
 
     /// Gives a pass those of its columns that it asks for.

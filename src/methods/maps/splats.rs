@@ -88,7 +88,11 @@ impl Splats {
 
     /// Columns that the shaders that splat read.
     pub fn columns(self) -> &'static [Column] {
-        if self.kind == "thin-lens" { &[Column::Hit, Column::Flux, Column::Exit] } else { &[Column::Hit, Column::Flux] }
+        match self.kind {
+            "thin-lens" => &[Column::Hit, Column::Flux, Column::Exit],
+            "elliptic" => &[Column::Hit, Column::Flux, Column::Way],
+            _ => &[Column::Hit, Column::Flux],
+        }
     }
 
     /// Tells a pass that splats photons of a light into the map of that number.
@@ -106,6 +110,8 @@ impl Splats {
             ("LEVEL_CEIL", varying && settings.choice(&LEVEL) == "ceil"),
             ("FOOTPRINT_AREA", self.kind == "varying" && settings.choice(&FOOTPRINT) == "area"),
             ("THIN_LENS", self.kind == "thin-lens"),
+            ("ELLIPTIC", self.kind == "elliptic"),
+            ("SHAPED", self.kind == "elliptic"),
             ("COUNTED", self.kind == "interpolated"),
         ];
         let pass = wanted.into_iter().filter(|(_, on)| *on).fold(pass, |pass, (name, _)| pass.define(name, 1));

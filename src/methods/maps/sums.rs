@@ -3,7 +3,7 @@
 //! Blending n photons alike into one texel errs by up to n 2⁻²⁵ of it: each addition rounds the sum the same way. In
 //! fixed point each photon is rounded once, to its 2⁻³¹, and what follows is exact.
 
-use super::{Axes, Job, cells};
+use super::{Axes, Job, cells, large};
 use crate::{
     gpu::{BufferId, ImageId, PassBuilder},
     passes::light,
@@ -29,6 +29,9 @@ pub fn fixed(job: &mut Job<'_>, axes: Axes<'_>, side: u32, layers: u32) -> Optio
     let bytes = (u64::from(side).pow(2) * u64::from(layers) + beyond) * BYTES;
     let reason = match axes.traverse {
         drawn if drawn != "compute" => format!("maps.traverse = {drawn}: splats are drawn, and so blended"),
+        _ if large::all_drawn(job, axes) => {
+            "splats of maps.splat_size are not below maps.raster_from: they are drawn, and so blended".to_owned()
+        }
         _ if bytes > BOUND => {
             format!("{bytes} bytes of sums are more than a buffer of 128 MiB holds: splats are blended")
         }
@@ -59,13 +62,11 @@ impl Fixed {
         self.give(pass).dispatch("maps/gather_fixed.comp", groups, GROUP * GROUP);
     }
 
-    /// The map of all views' sums.
-    pub fn resolve(&self, job: &mut Job<'_>, map: ImageId, side: u32) {
+    /// The map of all views' sums, on top of what was `drawn` to it.
+    pub fn resolve(&self, job: &mut Job<'_>, map: ImageId, side: u32, drawn: bool) {
         let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), job.plan.image_decl(map).layers];
-        self.resolving(job.plan.pass("maps/resolve")).store("maps_map", map).push(&(side as i32)).dispatch(
-            "maps/resolve.comp",
-            groups,
-            GROUP * GROUP,
-        );
+        let pass = self.resolving(job.plan.pass("maps/resolve"));
+        let pass = if drawn { pass.define("DRAWN", 1) } else { pass };
+        pass.store("maps_map", map).push(&(side as i32)).dispatch("maps/resolve.comp", groups, GROUP * GROUP);
     }
 }

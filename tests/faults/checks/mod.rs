@@ -3,6 +3,7 @@
 pub mod caustic;
 pub mod floor;
 pub mod light;
+pub mod merged;
 
 use crate::common::{
     assert_quiet,

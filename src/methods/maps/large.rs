@@ -1,0 +1,93 @@
+//! Large splats behind `compute`: marked by the dispatch that sums the others in fixed point, then drawn and blended. Which
+//! and in which order does not depend on who comes first, so that the map repeats itself bit by bit.
+
+use super::{Axes, Job, points::Points, sums::Fixed};
+use crate::{
+    gpu::{BufferId, Lifetime, PassBuilder, Row},
+    passes::light,
+    settings::Whole,
+};
+
+pub static RASTER_FROM: Whole = Whole {
+    key: "maps.raster_from",
+    unit: "texels",
+    default: 8,
+    range: 1..=256,
+    doc: "with maps.traverse = compute, the diameter from which splats are drawn and blended in float32, since summing them in \
+          fixed point takes longer; 256: none is",
+};
+
+/// Kinds of splats of any size. Of ellipses, which are thin, the square that is drawn would be mostly empty.
+const ROUND: [&str; 2] = ["varying", "thin-lens"];
+/// Invocations of the work group that sums (`PREFIX_GROUP` of `glsl/shared/prefix.glsl`).
+const SUMMING: u32 = 256;
+/// Invocations of a work group that marks, and along one of its sides.
+const MARKING: u64 = 64;
+const MARKING_SIDE: u32 = 8;
+
+/// What is marked of a view's splats. All views of one size share it.
+pub struct Large {
+    pub side: u32,
+    /// Work groups that gather one by one.
+    groups: u32,
+    /// A bit for each invocation of each work group that gathers.
+    masks: BufferId,
+    /// Marked ones before each work group.
+    before: BufferId,
+    /// Of each view, the draw of what is marked.
+    rows: BufferId,
+    from: u32,
+}
+
+/// Whether fixed splats are so large that all of them are drawn.
+pub fn all_drawn(job: &Job<'_>, axes: Axes<'_>) -> bool {
+    let size = job.settings.whole(&super::SPLAT_SIZE);
+    (axes.splat, axes.merge) == ("fixed", "none") && size >= job.settings.whole(&RASTER_FROM)
+}
+
+impl Large {
+    /// Buffers, for each size of view; none where no splat can be large.
+    pub fn plan(job: &mut Job<'_>, axes: Axes<'_>, fixed: &Option<Fixed>) -> Vec<Self> {
+        let from = job.settings.whole(&RASTER_FROM);
+        if fixed.is_none() || !ROUND.contains(&axes.splat) || from > 255 {
+            return Vec::new();
+        }
+        let rows = job.plan.buffer("maps/large.rows", job.emissions.len() as u64 * Row::BYTES, Lifetime::Frame);
+        let (sides, layers) = (light::sides(job.emissions), job.photons.layers());
+        let mut of = |&side: &u32| {
+            // Of those that gather what is merged there are no more.
+            let groups = side.div_ceil(MARKING_SIDE).pow(2) * layers;
+            let mut buffer = |name, bytes| {
+                job.plan.buffer(&light::sized(name, &sides, side), bytes * u64::from(groups), Lifetime::Frame)
+            };
+            let (masks, before) = (buffer("maps/large.masks", MARKING / 8), buffer("maps/large.before", 4));
+            Self { side, groups, masks, before, rows, from }
+        };
+        sides.iter().map(&mut of).collect()
+    }
+
+    /// Tells a pass that gathers to mark what is large.
+    pub fn mark<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        pass.define("LARGE", format!("{:.1}", f64::from(self.from))).write("large_masks", self.masks)
+    }
+
+    /// Counts what is marked.
+    pub fn count(&self, job: &mut Job<'_>, points: Option<&Points>, view: u32, name: &str) {
+        let pass = job.plan.pass(name).read("large_masks", self.masks).push(&view);
+        let pass = match points {
+            Some(points) => points.number(pass),
+            None => pass,
+        };
+        let pass = pass.define("GROUPS", format!("{}u", self.groups));
+        let pass = pass.write("large_before", self.before).write("large_rows", self.rows);
+        pass.dispatch("maps/large.comp", [1, 1, 1], SUMMING);
+    }
+
+    /// Draws it.
+    pub fn draw(&self, pass: PassBuilder<'_>, points: Option<&Points>, view: u32) {
+        let pass = points.into_iter().fold(pass, |pass, points| points.give(pass));
+        let pass = pass.read("large_masks", self.masks).read("large_before", self.before);
+        let pass = pass.read("large_rows", self.rows).define("ROW", view);
+        pass.draw_counted(&["maps/gather_large.vert", "maps/splat.frag"], Row { rows: self.rows, row: view });
+    }
+}
