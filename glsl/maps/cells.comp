@@ -24,17 +24,9 @@ layout(set = 0, binding = 14) uniform PHOTON_SAMPLER photons_way;
 layout(set = 0, binding = 15) uniform PHOTON_SAMPLER corners_hit;
 layout(set = 0, binding = 16) uniform PHOTON_SAMPLER corners_way;
 #ifdef REFINED
-layout(set = 0, binding = 18, scalar) writeonly buffer List { uint data[]; } cells_list;
+#define LISTS
+#include "maps/finer.glsl"
 #endif
-
-// What makes a cell worth tracing finer.
-bool is_coarse(Cell c, vec4 b) {
-    const float TEXELS = 0.5; // below it a bend is not seen
-    const float SHARE = 0.05;
-    const float WIDE = 4096.0; // texels
-    vec2 bent = bend(c), size = b.zw - b.xy;
-    return bent.x > TEXELS && bent.y > SHARE || size.x * size.y > WIDE;
-}
 
 // The layer that takes the centre's photon, or none.
 int layer_of_centre(vec4 hit, float normal) {
@@ -99,6 +91,7 @@ void main() {
     int layers[PHOTONS]; // that take them, or none
     vec3 flux[PHOTONS];  // W
     bool coarse = false;
+    float most = 0.0; // W, all bands
     for (int photon = 0; photon < PHOTONS; photon++) {
         vec4 hit = hit_at(texel, photon), stored = flux_at(texel, photon);
         flux[photon] = photon_flux(stored.rgb);
@@ -107,12 +100,16 @@ void main() {
         Cell cell = cell_about(texel, landed_at(hit.xyz, way[photon], layers[photon], push.side));
         vec4 b = bounds(cell);
         if (is_beside_map(b, push.side)) layers[photon] = NO_MAP;
-        coarse = coarse || layers[photon] != NO_MAP && (!is_one_sheet(cell) || is_coarse(cell, b));
         cells[photon] = cell;
+#ifdef REFINED
+        if (layers[photon] == NO_MAP) continue;
+        coarse = coarse || !is_one_sheet(cell) || is_coarse(cell, b);
+        most = max(most, flux[photon].r + flux[photon].g + flux[photon].b);
+#endif
     }
 #ifdef REFINED
     if (coarse || has_strays(texel, way)) {
-        cells_list.data[atomicAdd(cells_counts.data[2u * push.view], 1u)] = number;
+        list_cell(push.view, 0u, texel, most);
         return;
     }
 #endif

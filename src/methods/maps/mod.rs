@@ -5,6 +5,7 @@
 mod axes;
 mod cells;
 mod copied;
+mod finer;
 mod hierarchy;
 mod points;
 mod pyramid;
@@ -16,6 +17,7 @@ mod views;
 use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
 use cells::Cells;
 use copied::{COPY, Vertices};
+use finer::{ADAPT, MOST};
 use hierarchy::Hierarchy;
 use points::Points;
 use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
@@ -97,6 +99,8 @@ static SETTINGS: &[Setting] = &[
     Setting::Choice(&CULL),
     Setting::Choice(&COPY),
     Setting::Choice(&RECEIVERS),
+    Setting::Whole(&ADAPT),
+    Setting::Whole(&MOST),
 ];
 
 static CHAIN: &[Link] = &[
@@ -133,6 +137,8 @@ static CHAIN: &[Link] = &[
             "maps.cull",
             "maps.copy",
             "maps.receivers",
+            "maps.adapt",
+            "maps.adapt_most",
             "light.tile",
             "eye.samples",
         ],
