@@ -24,17 +24,9 @@ layout(set = 0, binding = 14) uniform PHOTON_SAMPLER photons_way;
 layout(set = 0, binding = 15) uniform PHOTON_SAMPLER corners_hit;
 layout(set = 0, binding = 16) uniform PHOTON_SAMPLER corners_way;
 #ifdef REFINED
-layout(set = 0, binding = 18, scalar) writeonly buffer List { uint data[]; } cells_list;
+#define LISTS
+#include "maps/finer.glsl"
 #endif
-
-// What makes a cell worth tracing finer.
-bool is_coarse(Cell c, vec4 b) {
-    const float TEXELS = 0.5; // below it a bend is not seen
-    const float SHARE = 0.05;
-    const float WIDE = 4096.0; // texels
-    vec2 bent = bend(c), size = b.zw - b.xy;
-    return bent.x > TEXELS && bent.y > SHARE || size.x * size.y > WIDE;
-}
 
 // Of a cell's corners, the ways that its photons went; 0 where there is none.
 uint corner_way[4][PHOTONS];
@@ -78,27 +70,41 @@ bool has_strays(ivec2 texel, uint way[PHOTONS]) {
     return false;
 }
 
-// Whether a photon of the centre is too coarse for what is about it, in any view; with `spreads` its light is spread.
-bool is_coarse_photon(ivec2 texel, int photon, uint way, bool spreads, uint number) {
+#ifdef REFINED
+// Whether a photon of the centre is too coarse for what is about it, in any view; the most flux of those in `most`.
+bool is_coarse_photon(ivec2 texel, int photon, uint way, inout float most) {
     vec4 hit = hit_at(texel, photon), flux = flux_at(texel, photon);
     if (hit.w == 0.0) return false;
-    vec3 n = photon_normal(flux.w);
+    bool coarse = false;
     for (int map = 0; map < maps_views.data.length(); map++) {
-        float share = share_of(map, hit.xyz, n, uint(hit.w) - 1u);
-        if (!(share > 0.0)) continue;
+        if (!(share_of(map, hit.xyz, photon_normal(flux.w), uint(hit.w) - 1u) > 0.0)) continue;
         Cell cell = cell_about(texel, hit.xyz, way, map);
         vec4 b = bounds(cell);
         if (is_beside_map(b, push.side)) continue;
-        bool whole = is_one_sheet(cell);
-        if (!spreads) {
-            if (!whole || is_coarse(cell, b)) return true;
-        } else if (whole && !is_torn(cell)) {
-            book(number, spread_cell(cell, map, share * photon_flux(flux.rgb)));
+        vec3 watts = photon_flux(flux.rgb);
+        most = max(most, watts.r + watts.g + watts.b);
+        coarse = coarse || !is_one_sheet(cell) || is_coarse(cell, b);
+    }
+    return coarse;
+}
+#endif
+
+// Spreads what of a photon of the centre lands in each view.
+void spread_photon(ivec2 texel, int photon, uint way, uint number) {
+    vec4 hit = hit_at(texel, photon), flux = flux_at(texel, photon);
+    if (hit.w == 0.0) return;
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        float share = share_of(map, hit.xyz, photon_normal(flux.w), uint(hit.w) - 1u);
+        if (!(share > 0.0)) continue;
+        Cell cell = cell_about(texel, hit.xyz, way, map);
+        if (is_beside_map(bounds(cell), push.side)) continue;
+        vec3 watts = share * photon_flux(flux.rgb);
+        if (is_one_sheet(cell) && !is_torn(cell)) {
+            book(number, spread_cell(cell, map, watts));
         } else if (cell.centre.way != 0u) {
-            book(number, put_point(cell.centre.at, map, share * photon_flux(flux.rgb), number));
+            book(number, put_point(cell.centre.at, map, watts, number));
         }
     }
-    return false;
 }
 
 void main() {
@@ -113,13 +119,14 @@ void main() {
     }
 #ifdef REFINED
     bool coarse = has_strays(texel, way);
-    for (int photon = 0; photon < PHOTONS && !coarse; photon++) {
-        coarse = is_coarse_photon(texel, photon, way[photon], false, number);
+    float most = 0.0; // W, all bands
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        coarse = is_coarse_photon(texel, photon, way[photon], most) || coarse;
     }
     if (coarse) {
-        cells_list.data[atomicAdd(cells_counts.data[2u * push.view], 1u)] = number;
+        list_cell(push.view, 0u, texel, most);
         return;
     }
 #endif
-    for (int photon = 0; photon < PHOTONS; photon++) is_coarse_photon(texel, photon, way[photon], true, number);
+    for (int photon = 0; photon < PHOTONS; photon++) spread_photon(texel, photon, way[photon], number);
 }

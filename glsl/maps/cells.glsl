@@ -105,7 +105,7 @@ struct Large {
     int row; // the first, counted from the first that the map has of it
 };
 
-layout(set = 0, binding = 19, scalar) buffer Counts { uint data[]; } cells_counts; // two a view: cells listed, large parts
+layout(set = 0, binding = 19, scalar) buffer Counts { uint data[]; } cells_counts; // large parts of each view
 layout(set = 0, binding = 20, scalar) buffer LargeList { Large data[]; } cells_large;
 
 // Rows of a part, of which a piece has `across` texels each.
@@ -140,7 +140,7 @@ void spread_or_list(Flat t, int layer, vec3 flux) {
         return;
     }
     int rows = rows_of_part(size.x);
-    uint parts = uint((size.y + rows - 1) / rows), place = atomicAdd(cells_counts.data[2u * push.view + 1u], parts);
+    uint parts = uint((size.y + rows - 1) / rows), place = atomicAdd(cells_counts.data[push.view], parts);
     for (uint part = 0u; part < parts; part++) {
         Large large = Large(t, flux, layer, int(part) * rows);
         if (place + part < uint(cells_large.data.length())) {

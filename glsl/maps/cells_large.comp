@@ -16,7 +16,7 @@ layout(push_constant, scalar) uniform Push {
 #include "maps/cells.glsl"
 
 void main() {
-    uint parts = min(cells_counts.data[2u * push.view + 1u], uint(cells_large.data.length()));
+    uint parts = min(cells_counts.data[push.view], uint(cells_large.data.length()));
     for (uint part = gl_WorkGroupID.x; part < parts; part += gl_NumWorkGroups.x) {
         spread_part(cells_large.data[part], int(gl_LocalInvocationIndex), 64);
     }

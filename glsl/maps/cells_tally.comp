@@ -1,5 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
 
 // What the cells of all views brought, and how many were traced finer, for the report; their sums begin anew.
 
@@ -10,9 +11,13 @@ layout(push_constant, scalar) uniform Push {
     uint views;
 } push;
 
+#ifdef CELLS_LEVELS
+#include "maps/finer.glsl"
+#endif
+
 layout(set = 0, binding = 10, scalar) buffer MapSums { uint data[]; } maps_sums;
 layout(set = 0, binding = 12, scalar) readonly buffer MapUnit { float per_watt, watts; } maps_unit;
-layout(set = 0, binding = 19, scalar) buffer Counts { uint data[]; } cells_counts; // two a view
+layout(set = 0, binding = 19, scalar) buffer Counts { uint data[]; } cells_counts; // large parts of each view
 layout(set = 0, binding = 18, scalar) writeonly buffer Tally { uint data[]; } cells_tally;
 
 // 64 slots of three bands of two words, twice; a band of a kind for each of the first six invocations.
@@ -31,12 +36,21 @@ void main() {
         cells_tally.data[lane] = floatBitsToUint(units * maps_unit.watts); // W
     }
     if (lane == 6u) {
-        uint listed = 0u;
-        for (uint view = 0u; view < push.views; view++) {
-            listed += cells_counts.data[2u * view];
-            cells_counts.data[2u * view] = 0u;
-            cells_counts.data[2u * view + 1u] = 0u;
+        for (uint view = 0u; view < push.views; view++) cells_counts.data[view] = 0u;
+        uint traced = 0u, left = 0u;
+#ifdef CELLS_LEVELS
+        for (uint row = 0u; row < ROW * push.views * uint(CELLS_LEVELS); row += ROW) {
+            uint least = least_octave(row);
+            for (uint octave = 0u; octave < OCTAVES; octave++) {
+                if (octave >= least) traced += cells_rows.data[row + 4u + octave];
+                else left += cells_rows.data[row + 4u + octave];
+                cells_rows.data[row + 4u + octave] = 0u;
+            }
+            cells_rows.data[row] = 0u;
+            cells_rows.data[row + 3u] = 0u;
         }
-        cells_tally.data[6] = listed;
+#endif
+        cells_tally.data[6] = traced;
+        cells_tally.data[7] = left;
     }
 }

@@ -49,6 +49,8 @@ pub struct Counted {
     pub samples: u64,
     /// Cells traced finer.
     pub refined: u64,
+    /// Cells that were to be traced finer, but were more than a level takes.
+    pub left: u64,
 }
 
 impl Renderer {
@@ -118,9 +120,9 @@ impl Renderer {
         let Some(tally) = self.planned.tally else { return Ok(None) };
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.program.read_buffer(tally.buffer)?);
         let mean = |bands: &[u32]| bands.iter().map(|&w| f64::from(f32::from_bits(w))).sum::<f64>() / 3.0;
-        let refined = u64::from(words[6]);
-        let samples = tally.samples + tally.each * refined;
-        Ok(Some(Counted { arrived_w: mean(&words[..3]), points_w: mean(&words[3..6]), samples, refined }))
+        let [refined, left] = [6, 7].map(|word: usize| u64::from(words[word]));
+        let samples = tally.samples + tally.each[0] * refined + tally.each[1] * left;
+        Ok(Some(Counted { arrived_w: mean(&words[..3]), points_w: mean(&words[3..6]), samples, refined, left }))
     }
 
     /// Bytes a photon in the photon buffer; 0 without photons.

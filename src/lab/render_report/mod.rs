@@ -107,6 +107,7 @@ struct CountedRow {
     points_w: f64,
     samples: u64,
     refined: u64,
+    left: u64,
 }
 
 impl RenderReport {
@@ -225,11 +226,12 @@ impl EnergyRow {
             valid_w: energy.valid_w,
             deposited_w: energy.deposited_w,
             ratio: energy.ratio,
-            counted: energy.counted.map(|Counted { arrived_w, points_w, samples, refined }| CountedRow {
+            counted: energy.counted.map(|Counted { arrived_w, points_w, samples, refined, left }| CountedRow {
                 arrived_w,
                 points_w,
                 samples,
                 refined,
+                left,
             }),
             flux_w: flux(account),
         }

@@ -59,8 +59,9 @@ impl Report for RenderReport {
         ];
         notes.extend(energy.counted.as_ref().map(|c| {
             format!(
-                "cells: {} light samples, {} cells traced finer; {:.6} W arrive in the map, of it {:.6} W as points",
-                c.samples, c.refined, c.arrived_w, c.points_w
+                "cells: {} light samples, {} cells traced finer, {} left by maps.adapt_most; {:.6} W arrive in the map, of it \
+                 {:.6} W as points",
+                c.samples, c.refined, c.left, c.arrived_w, c.points_w
             )
         }));
         notes.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));

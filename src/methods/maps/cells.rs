@@ -3,42 +3,37 @@
 //! Ours. The corners are traced beside the centres, and the four triangles between them are shared out among the map's
 //! texels exactly: where neighbouring rays stay neighbours, no light is blurred and no gap is left. A cell that its
 //! five rays do not describe (cut by a silhouette or a crease, bent, or very large) is traced again as 4 × 4 smaller
-//! ones. That takes rays from anywhere, as `bvh` traces them; the image-space tracers know the centres of texels
+//! ones, and those again ([`Finer`]). That takes rays from anywhere, as `bvh` traces them; the image-space tracers know the centres of texels
 //! alone, and leave such cells as points.
 
-use super::{Axes, Job, SPLAT_SIZE, sums::Fixed};
+use super::{
+    Axes, Job, SPLAT_SIZE,
+    finer::{Finer, SAMPLES},
+    sums::Fixed,
+};
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder, Resource},
     methods::Tally,
     passes::{
         PlanError,
-        light::{Column, Corners, SamplePush, TRACER, Tracing},
+        light::{Column, Corners},
     },
-    scene::PathClass,
 };
 
 /// What a centre's photon must tell.
 pub const COLUMNS: &[Column] = &[Column::Hit, Column::Flux, Column::Way];
 /// Places beyond the map's where what arrived is summed, and what of it went as points (`SLOTS` of `glsl/maps/cells.glsl`).
 pub const PLACES: u64 = 128;
-/// Light samples that a refined cell takes (`SAMPLES` of `glsl/maps/cells_refine.comp`).
-const SAMPLES: u64 = 25 + 16;
 /// Parts of large pieces that are listed for each photon of a view, and at most; what comes after is spread where it is found.
 const LARGE_EACH: u64 = 16;
 const LARGE_MOST: u64 = 1 << 18;
 /// Bytes of one (`Large` of `glsl/maps/cells.glsl`).
 const LARGE_BYTES: u64 = 52;
 /// Words of the tally.
-const TALLY_BYTES: u64 = 7 * 4;
+const TALLY_BYTES: u64 = 8 * 4;
 /// Work groups that share the parts: enough for the widest device, and few enough to cost next to nothing where none is
 /// listed.
 const GROUPS: u32 = 4096;
-/// Work groups that share the listed cells, for each photon along a side: cells are cut by lines, and grow with it. lavapipe
-/// ends all loops of an invocation after 65535 rounds: one that took hundreds of cells would lose light there. Groups cost it a
-/// tenth of a millisecond each, with or without a cell.
-const REFINING: u32 = 2;
-/// As many times more where a sample grows a tree.
-const REFINING_TREES: u32 = 8;
 /// Photons a sample that a work group's shared memory holds for 41 samples, of the 16 KiB that every device has.
 const LAYERS_MOST: u32 = 14;
 /// Invocations along one side of the other work groups.
@@ -47,12 +42,11 @@ const GROUP: u32 = 8;
 /// Cells, planned.
 pub struct Cells {
     corners: Corners,
-    /// Of each view, how many cells are to be traced finer, and how many pieces are large.
+    /// Of each view, how many parts of pieces are large.
     counts: BufferId,
     /// Pieces of cells that cover many texels.
     large: BufferId,
-    /// The cells to be traced finer, where the tracer can.
-    list: Option<BufferId>,
+    finer: Option<Finer>,
     views: BufferId,
     /// Texels of the map.
     side: u32,
@@ -77,15 +71,6 @@ struct LargePush {
     diameter: f32,
     light: u32,
     view: u32,
-}
-
-/// Push constants of `glsl/maps/cells_refine.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct RefinePush {
-    sample: SamplePush,
-    side: i32,
-    diameter: f32,
 }
 
 /// Push constants of `glsl/maps/cells_tally.comp`.
@@ -130,17 +115,10 @@ impl Cells {
         let corners = Corners::plan(job.plan, job.bench, &[Column::Hit, Column::Way])?;
         let count = job.emissions.len();
         let cells = u64::from(job.photons.side).pow(2);
-        let counts = job.plan.upload_once("maps/cells.counts", &vec![0u32; 2 * count]);
+        let counts = job.plan.upload_once("maps/cells.counts", &vec![0u32; count]);
         let places = (LARGE_EACH * cells * u64::from(job.photons.layers())).min(LARGE_MOST);
         let large = job.plan.buffer("maps/cells.large", places * LARGE_BYTES, Lifetime::Frame);
-        let list = (job.settings.choice(&TRACER) == "bvh")
-            .then(|| job.plan.buffer("maps/cells.list", 4 * cells, Lifetime::Frame));
-        if list.is_none() {
-            job.plan.leave_out(
-                "maps/cells.refine",
-                "the tracer's images show no more than the centres of their texels: cells cut by an edge go as points",
-            );
-        }
+        let finer = Finer::plan(job);
         let each = |[x, y]: [u32; 2]| u64::from(x) * u64::from(y) + u64::from(x + 1) * u64::from(y + 1);
         let samples = job.emissions.iter().map(|emission| each(emission.held())).sum();
         let buffer = job.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);
@@ -149,7 +127,7 @@ impl Cells {
             corners,
             counts,
             large,
-            list,
+            finer,
             views,
             side,
             diameter,
@@ -168,33 +146,19 @@ impl Cells {
         let pass = job.photons.define(self.give(fixed, job.plan.pass(&name_of("maps/cells"))));
         let pass =
             pass.with(job.photons.fetch(COLUMNS)).with(self.corners(emission.side)).read("maps_views", self.views);
-        let pass = self.list.into_iter().fold(pass, |pass, list| pass.define("REFINED", 1).write("cells_list", list));
+        let pass = self.finer.iter().fold(pass, |pass, finer| finer.begin(pass));
         pass.push(&push).dispatch("maps/cells.comp", [groups, groups, 1], GROUP * GROUP);
-        if let Some(list) = self.list {
-            self.refine(job, fixed, list, view, &name_of("maps/cells.refine"));
+        if let Some(finer) = &self.finer {
+            finer.refine(
+                job,
+                view,
+                (side, diameter),
+                &|pass| self.give(fixed, pass).read("maps_views", self.views),
+                name_of,
+            );
         }
         let pass = self.give(fixed, job.plan.pass(&name_of("maps/cells.large")));
         pass.push(&map).dispatch("maps/cells_large.comp", [GROUPS, 1, 1], GROUP * GROUP);
-    }
-
-    fn refine(&self, job: &mut Job<'_>, fixed: &Fixed, list: BufferId, view: usize, name: &str) {
-        let tracing = Tracing {
-            scene: job.bench.buffers,
-            views: job.bench.views,
-            tracer: job.tracer,
-            class: job.bench.class,
-            photons: job.photons,
-            emission: &job.emissions[view],
-            index: view,
-        };
-        let (side, diameter) = (self.side as i32, self.diameter);
-        let several = matches!(job.bench.class, PathClass::All(_));
-        let groups = job.photons.side * REFINING * if several { REFINING_TREES } else { 1 };
-        let pass = tracing.give(self.give(fixed, job.plan.pass(name)));
-        pass.read("maps_views", self.views)
-            .read("cells_list", list)
-            .push(&RefinePush { sample: tracing.push(), side, diameter })
-            .dispatch("maps/cells_refine.comp", [groups, 1, 1], GROUP * GROUP);
     }
 
     /// What all passes over cells read and write.
@@ -213,6 +177,7 @@ impl Cells {
         let views = job.emissions.len() as u32;
         let pass = fixed.resolving(job.plan.pass("maps/cells.tally")).write("cells_tally", self.tally.buffer);
         let pass = pass.write("cells_counts", self.counts);
+        let pass = self.finer.iter().fold(pass, |pass, finer| finer.count(pass));
         let first = self.side * self.side * layers;
         pass.push(&TallyPush { first, views }).dispatch("maps/cells_tally.comp", [1, 1, 1], GROUP * GROUP);
     }

@@ -5,6 +5,7 @@
 mod axes;
 mod cells;
 mod copied;
+mod finer;
 mod hierarchy;
 mod large;
 mod points;
@@ -18,6 +19,7 @@ mod windows;
 use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
 use cells::Cells;
 use copied::{COPY, Vertices};
+use finer::{ADAPT, MOST};
 use hierarchy::Hierarchy;
 use large::{Large, RASTER_FROM};
 use points::Points;
@@ -111,6 +113,8 @@ static SETTINGS: &[Setting] = &[
     Setting::Choice(&COPY),
     Setting::Choice(&RECEIVERS),
     Setting::Choice(&BIND),
+    Setting::Whole(&ADAPT),
+    Setting::Whole(&MOST),
 ];
 
 static CHAIN: &[Link] = &[
@@ -149,6 +153,8 @@ static CHAIN: &[Link] = &[
             "maps.copy",
             "maps.receivers",
             "maps.bind",
+            "maps.adapt",
+            "maps.adapt_most",
             "light.tile",
             "eye.samples",
         ],
