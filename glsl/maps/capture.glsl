@@ -3,5 +3,5 @@
 
 bool captured(vec3 p, vec3 n, uint receiver, uint light) {
     vec2 xy01;
-    return map_layer(p, n, receiver, light, xy01) >= 0;
+    return map_view(p, n, receiver, light, xy01) >= 0;
 }

@@ -28,39 +28,34 @@ layout(set = 0, binding = 16) uniform PHOTON_SAMPLER corners_way;
 #include "maps/finer.glsl"
 #endif
 
-// The layer that takes the centre's photon, or none.
-int layer_of_centre(vec4 hit, float normal) {
-    vec2 xy01;
-    if (hit.w == 0.0) return NO_MAP;
-    int layer = layer_of(uint(hit.w) - 1u, push.light);
-    if (layer == NO_MAP) return NO_MAP;
-    return map_project(maps_views.data[layer].view, hit.xyz, photon_normal(normal), xy01) ? layer : NO_MAP;
-}
-
 // Of a cell's corners, the ways that its photons went; 0 where there is none.
 uint corner_way[4][PHOTONS];
 
-ivec2 corner_place(ivec2 texel, int k) {
-    return texel + step_to(k);
-}
-
-Corner corner_landed(ivec2 texel, int k, int photon) {
-    vec4 hit = texelFetch(corners_hit, PHOTON_PLACE(corner_place(texel, k), photon), 0);
-    if (hit.w == 0.0) return Corner(vec2(0.0), 0u);
-    return landed_at(hit.xyz, corner_way[k][photon], layer_of(uint(hit.w) - 1u, push.light), push.side);
+vec4 corner_hit(ivec2 texel, int k, int photon) {
+    return texelFetch(corners_hit, PHOTON_PLACE(texel + step_to(k), photon), 0);
 }
 
 // What lies between a photon of the centre and those of the corners that went its way.
-Cell cell_about(ivec2 texel, Corner centre) {
+Cell cell_about(ivec2 texel, vec3 p, uint way, int map) {
     Cell cell;
-    cell.centre = centre;
+    cell.centre = landed_at(p, way, map);
     for (int k = 0; k < 4; k++) {
         cell.corner[k] = Corner(vec2(0.0), 0u);
         for (int photon = 0; photon < PHOTONS; photon++) {
-            if (corner_way[k][photon] == centre.way) cell.corner[k] = corner_landed(texel, k, photon);
+            if (corner_way[k][photon] == way) cell.corner[k] = landed_at(corner_hit(texel, k, photon).xyz, way, map);
         }
     }
     return cell;
+}
+
+// Whether a corner's photon lands in the map.
+bool lands_in_map(vec4 hit, uint way) {
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        if (!map_is_of(map, uint(hit.w) - 1u, push.light)) continue;
+        Corner c = landed_at(hit.xyz, way, map);
+        if (c.way != 0u && !is_beside_map(vec4(c.at, c.at), push.side)) return true;
+    }
+    return false;
 }
 
 // Whether light lands in the map at a corner by a way that no photon of the centre went.
@@ -69,9 +64,30 @@ bool has_strays(ivec2 texel, uint way[PHOTONS]) {
         for (int photon = 0; photon < PHOTONS; photon++) {
             bool known = corner_way[k][photon] == 0u;
             for (int other = 0; other < PHOTONS; other++) known = known || corner_way[k][photon] == way[other];
-            if (known) continue;
-            Corner c = corner_landed(texel, k, photon);
-            if (c.way != 0u && !is_beside_map(vec4(c.at, c.at), push.side)) return true;
+            if (!known && lands_in_map(corner_hit(texel, k, photon), corner_way[k][photon])) return true;
+        }
+    }
+    return false;
+}
+
+// Whether a photon of the centre is too coarse for what is about it, in any view; with `spreads` its light is spread.
+bool is_coarse_photon(ivec2 texel, int photon, uint way, bool spreads, uint number) {
+    vec4 hit = hit_at(texel, photon), flux = flux_at(texel, photon);
+    if (hit.w == 0.0) return false;
+    vec3 n = photon_normal(flux.w);
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        float share = share_of(map, hit.xyz, n, uint(hit.w) - 1u);
+        if (!(share > 0.0)) continue;
+        Cell cell = cell_about(texel, hit.xyz, way, map);
+        vec4 b = bounds(cell);
+        if (is_beside_map(b, push.side)) continue;
+        bool whole = is_one_sheet(cell);
+        if (!spreads) {
+            if (!whole || is_coarse(cell, b)) return true;
+        } else if (whole && !is_torn(cell)) {
+            book(number, spread_cell(cell, map, share * photon_flux(flux.rgb)));
+        } else if (cell.centre.way != 0u) {
+            book(number, put_point(cell.centre.at, map, share * photon_flux(flux.rgb), number));
         }
     }
     return false;
@@ -84,41 +100,21 @@ void main() {
     for (int photon = 0; photon < PHOTONS; photon++) {
         way[photon] = uint(texelFetch(photons_way, PHOTON_PLACE(texel, photon), 0).r);
         for (int k = 0; k < 4; k++) {
-            corner_way[k][photon] = uint(texelFetch(corners_way, PHOTON_PLACE(corner_place(texel, k), photon), 0).r);
+            corner_way[k][photon] = uint(texelFetch(corners_way, PHOTON_PLACE(texel + step_to(k), photon), 0).r);
         }
     }
-    Cell cells[PHOTONS];
-    int layers[PHOTONS]; // that take them, or none
-    vec3 flux[PHOTONS];  // W
-    bool coarse = false;
+#ifdef REFINED
+    bool coarse = has_strays(texel, way);
     float most = 0.0; // W, all bands
     for (int photon = 0; photon < PHOTONS; photon++) {
-        vec4 hit = hit_at(texel, photon), stored = flux_at(texel, photon);
-        flux[photon] = photon_flux(stored.rgb);
-        layers[photon] = layer_of_centre(hit, stored.w);
-        if (layers[photon] == NO_MAP) continue;
-        Cell cell = cell_about(texel, landed_at(hit.xyz, way[photon], layers[photon], push.side));
-        vec4 b = bounds(cell);
-        if (is_beside_map(b, push.side)) layers[photon] = NO_MAP;
-        cells[photon] = cell;
-#ifdef REFINED
-        if (layers[photon] == NO_MAP) continue;
-        coarse = coarse || !is_one_sheet(cell) || is_coarse(cell, b);
-        most = max(most, flux[photon].r + flux[photon].g + flux[photon].b);
-#endif
+        vec3 flux = photon_flux(flux_at(texel, photon).rgb);
+        most = max(most, flux.r + flux.g + flux.b);
+        coarse = coarse || is_coarse_photon(texel, photon, way[photon], false, number);
     }
-#ifdef REFINED
-    if (coarse || has_strays(texel, way)) {
+    if (coarse) {
         list_cell(push.view, 0u, texel, most);
         return;
     }
 #endif
-    for (int photon = 0; photon < PHOTONS; photon++) {
-        if (layers[photon] == NO_MAP) continue;
-        Cell cell = cells[photon];
-        bool whole = is_one_sheet(cell) && !is_torn(cell);
-        if (cell.centre.way == 0u) continue;
-        book(number, whole ? spread_cell(cell, layers[photon], flux[photon])
-                           : put_point(cell.centre.at, layers[photon], flux[photon], number));
-    }
+    for (int photon = 0; photon < PHOTONS; photon++) is_coarse_photon(texel, photon, way[photon], true, number);
 }

@@ -9,7 +9,6 @@
 #include "shared/flux_sums.glsl"
 #include "shared/splat.glsl"
 
-const int NO_MAP = -1;
 const uint SLOTS = 64u; // places beyond the map's, twice: sums of what arrived, and of what of it went as points
 
 // A corner's or a centre's landing.
@@ -31,20 +30,19 @@ ivec2 step_to(int k) {
 // Texels beyond which a place is not told from infinity.
 const float FARTHEST = 1e5;
 
-// The layer that holds this receiver's light, or none.
-int layer_of(uint receiver, uint light) {
-    for (int layer = 0; layer < maps_views.data.length(); layer++) {
-        MapView map = maps_views.data[layer];
-        if ((map.receiver == ANY || map.receiver == receiver) && (map.light == ANY || map.light == light)) return layer;
-    }
-    return NO_MAP;
+// Where in the layer of a view.
+Corner landed_at(vec3 p, uint way, int map) {
+    vec2 xy01;
+    if (way == 0u || !view_project(maps_views.data[map].view, p, xy01)) return Corner(vec2(0.0), 0u);
+    vec2 at = xy01 * float(push.side);
+    return Corner(at, all(lessThan(abs(at), vec2(FARTHEST))) ? way : 0u);
 }
 
-Corner landed_at(vec3 p, uint way, int layer, int side) {
+// What of a photon's flux goes to a view's layer.
+float share_of(int map, vec3 p, vec3 n, uint receiver) {
     vec2 xy01;
-    if (way == 0u || layer == NO_MAP || !view_project(maps_views.data[layer].view, p, xy01)) return Corner(vec2(0.0), 0u);
-    vec2 at = xy01 * float(side);
-    return Corner(at, all(lessThan(abs(at), vec2(FARTHEST))) ? way : 0u);
+    if (!map_is_of(map, receiver, push.light)) return 0.0;
+    return map_share(maps_views.data[map], p, n, xy01);
 }
 
 bool is_one_sheet(Cell c) {
@@ -59,6 +57,20 @@ vec2 bend(Cell c) {
     float beside = distance(middle, c.centre.at);
     float across = max(distance(c.corner[0].at, c.corner[2].at), distance(c.corner[1].at, c.corner[3].at));
     return vec2(beside, beside / max(across, LEAST));
+}
+
+// What makes a cell worth tracing finer; `b` are its bounds. Within WIDE texels its light is taken as even: fewer where
+// what is listed may be listed again.
+bool is_coarse(Cell c, vec4 b) {
+    const float TEXELS = 0.5; // below it a bend is not seen
+    const float SHARE = 0.05;
+#if defined(CELLS_LEVELS) && CELLS_LEVELS > 1
+    const float WIDE = 512.0;
+#else
+    const float WIDE = 4096.0;
+#endif
+    vec2 bent = bend(c), size = b.zw - b.xy;
+    return bent.x > TEXELS && bent.y > SHARE || size.x * size.y > WIDE;
 }
 
 // Whether the light of neighbouring rays parts within the cell, at a crease or behind an edge: its triangles would
@@ -90,8 +102,9 @@ void put(ivec2 texel, int layer, vec3 flux) {
     add_flux(uint((layer * push.side + texel.y) * push.side + texel.x), flux);
 }
 
+// Of the map, whose last views lie in its last layer.
 uint places() {
-    return uint(maps_views.data.length() * push.side * push.side);
+    return (maps_views.data[maps_views.data.length() - 1].layer + 1u) * uint(push.side * push.side);
 }
 
 void book(uint slot, vec3 arrived) {
@@ -155,7 +168,8 @@ void spread_or_list(Flat t, int layer, vec3 flux) {
 // A cell's flux; returns what of it lands in the map. A quarter for each of the triangles about the centre, which never fold;
 // where none is turned over and they are alike, or so small that nobody sees where in the quad light lies, that is the
 // quad, for a fraction of the additions.
-vec3 spread_cell(Cell c, int layer, vec3 flux) {
+vec3 spread_cell(Cell c, int map, vec3 flux) {
+    int layer = int(maps_views.data[map].layer);
     const float ALIKE = 0.9;  // least of their areas to the greatest
     const float SMALL = 1.5;  // texels across
     vec2 m = c.centre.at;
@@ -188,7 +202,8 @@ ivec2 covered(float p, float d) {
 }
 
 // A light sample of which nothing better is known, as a splat of fixed size; returns what of its flux lands in the map.
-vec3 put_point(vec2 at, int layer, vec3 flux, uint slot) {
+vec3 put_point(vec2 at, int map, vec3 flux, uint slot) {
+    int layer = int(maps_views.data[map].layer);
     if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(push.side)))) return vec3(0.0);
     float d = splat_diameter(push.diameter);
     vec2 p = vec2(splat_snap(at.x), splat_snap(at.y));

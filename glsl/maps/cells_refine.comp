@@ -38,22 +38,20 @@ const int PHOTONS = LAYERS;
 const int PHOTONS = 1;
 #endif
 
-// What a photon brings to the map.
+// A photon that lands on a receiver.
 struct Arrival {
-    Corner landed;
+    vec3 p;
+    uint way; // 0: none
     vec3 flux; // W
-    int layer;
+    float normal; // packed
+    uint receiver;
 };
 
 shared Arrival arrivals[SAMPLES][PHOTONS];
 shared vec3 arrived[64]; // W, by the invocations
 
 Arrival arrival_of(Photon p) {
-    uint way = photon_way(p);
-    vec2 xy01;
-    int layer = way == 0u ? NO_MAP : layer_of(p.receiver, push.light);
-    if (layer != NO_MAP && !map_project(maps_views.data[layer].view, p.hit, p.normal, xy01)) layer = NO_MAP;
-    return Arrival(landed_at(p.hit, way, layer, push.side), p.flux, layer);
+    return Arrival(p.hit, photon_way(p), p.flux, octahedral_pack(p.normal), p.receiver);
 }
 
 #ifdef LAYERS
@@ -73,7 +71,7 @@ void trace_sample(int number, ivec2 at, bool centre, int finer) {
 #ifdef LAYERS
     traced = number;
     layers_filled = 0;
-    for (int k = 0; k < PHOTONS; k++) arrivals[number][k].landed.way = 0u;
+    for (int k = 0; k < PHOTONS; k++) arrivals[number][k].way = 0u;
     trace_tree(light);
 #else
     arrivals[number][0] = arrival_of(trace_photon(light));
@@ -81,9 +79,9 @@ void trace_sample(int number, ivec2 at, bool centre, int finer) {
 }
 
 // Where that way led from a corner.
-Corner by_way(int corner, uint way) {
+Corner by_way(int corner, uint way, int map) {
     for (int k = 0; k < PHOTONS; k++) {
-        if (arrivals[corner][k].landed.way == way) return arrivals[corner][k].landed;
+        if (arrivals[corner][k].way == way) return landed_at(arrivals[corner][k].p, way, map);
     }
     return Corner(vec2(0.0), 0u);
 }
@@ -105,47 +103,77 @@ Samples cell_samples(int number, bool whole) {
     return s;
 }
 
-Cell cell_of(Samples s, int photon) {
+// What lies about a photon of a cell's centre, in a view's layer.
+Cell cell_of(Samples s, Arrival a, int map) {
     Cell c;
-    c.centre = arrivals[s.centre][photon].landed;
-    for (int k = 0; k < 4; k++) c.corner[k] = by_way(s.corner[k], c.centre.way);
+    c.centre = landed_at(a.p, a.way, map);
+    for (int k = 0; k < 4; k++) c.corner[k] = by_way(s.corner[k], a.way, map);
     return c;
 }
 
-// What of the flux of a photon of a cell's centre lands in the map.
+// What of a photon's flux goes to a view's layer.
+float share_of_arrival(Arrival a, int map) {
+    return a.way == 0u ? 0.0 : share_of(map, a.p, octahedral_unpack(a.normal), a.receiver);
+}
+
+// What of a flux (W) about the centre of a cell lands in a view's layer.
+vec3 put_cell(Cell c, int map, vec3 flux, uint slot) {
+    if (c.centre.way == 0u) return vec3(0.0);
+    if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, map, flux, slot);
+    return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, map, flux);
+}
+
+// What of a photon's of a cell's centre lands in the map.
 vec3 take(Samples s, int photon, uint slot) {
     Arrival a = arrivals[s.centre][photon];
-    if (a.landed.way == 0u) return vec3(0.0);
-    Cell c = cell_of(s, photon);
-    if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, a.layer, a.flux, slot);
-    return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, a.layer, a.flux);
+    vec3 got = vec3(0.0);
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        float share = share_of_arrival(a, map);
+        if (share > 0.0) got += put_cell(cell_of(s, a, map), map, share * a.flux, slot);
+    }
+    return got;
 }
 
 #ifdef DEEPER
 shared bool deeper[FINER * FINER];
 
-// The flux (W, all bands) of a cell's brightest photon, where it is worth tracing finer; else none.
+// Whether a photon of a cell's centre is too coarse for what is about it, in any view.
+bool is_coarse_arrival(Samples s, Arrival a) {
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        if (!(share_of_arrival(a, map) > 0.0)) continue;
+        Cell c = cell_of(s, a, map);
+        vec4 b = bounds(c);
+        if (!is_beside_map(b, push.side) && (!is_one_sheet(c) || is_coarse(c, b))) return true;
+    }
+    return false;
+}
+
+// Whether a corner's photon lands in the map by a way that none of the centre's went.
+bool is_stray(Samples s, Arrival a) {
+    if (a.way == 0u) return false;
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        if (arrivals[s.centre][photon].way == a.way) return false;
+    }
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        if (!map_is_of(map, a.receiver, push.light)) continue;
+        Corner c = landed_at(a.p, a.way, map);
+        if (c.way != 0u && !is_beside_map(vec4(c.at, c.at), push.side)) return true;
+    }
+    return false;
+}
+
+// The flux (W, all bands) of the brightest photon for which a cell is worth tracing finer; none, if it is not.
 float coarse_flux(Samples s) {
-    bool coarse = false;
     float most = 0.0;
     for (int photon = 0; photon < PHOTONS; photon++) {
         Arrival a = arrivals[s.centre][photon];
-        Cell c = cell_of(s, photon);
-        vec4 b = bounds(c);
-        if (a.landed.way == 0u || is_beside_map(b, push.side)) continue;
-        coarse = coarse || !is_one_sheet(c) || is_coarse(c, b);
-        most = max(most, a.flux.r + a.flux.g + a.flux.b);
-    }
-    for (int k = 0; k < 4; k++) {
-        for (int photon = 0; photon < PHOTONS; photon++) {
-            Arrival a = arrivals[s.corner[k]][photon];
-            if (a.landed.way == 0u || is_beside_map(vec4(a.landed.at, a.landed.at), push.side)) continue;
-            if (by_way(s.centre, a.landed.way).way != 0u) continue;
-            coarse = true; // light that came by a way that none of the centre's went
-            most = max(most, a.flux.r + a.flux.g + a.flux.b);
+        if (is_coarse_arrival(s, a)) most = max(most, a.flux.r + a.flux.g + a.flux.b);
+        for (int k = 0; k < 4; k++) {
+            Arrival corner = arrivals[s.corner[k]][photon];
+            if (is_stray(s, corner)) most = max(most, corner.flux.r + corner.flux.g + corner.flux.b);
         }
     }
-    return coarse ? most : 0.0;
+    return most;
 }
 #endif
 

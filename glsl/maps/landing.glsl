@@ -11,7 +11,7 @@ struct Landed {
     vec3 n;
     uint receiver;
     vec2 xy01;
-    int map;
+    int map; // of the views
 };
 
 // From its columns. False if no map takes a photon of this light, or there is none.
@@ -20,7 +20,7 @@ bool landing_of(vec4 hit, float normal, uint light, out Landed l) {
     if (hit.w == 0.0) return false;
     l.n = photon_normal(normal);
     l.receiver = uint(hit.w) - 1u;
-    l.map = map_layer(l.p, l.n, l.receiver, light, l.xy01);
+    l.map = map_view(l.p, l.n, l.receiver, light, l.xy01);
     return l.map >= 0;
 }
 

@@ -44,13 +44,13 @@ int level_of(float diameter) {
 bool splat_of(Landed l, vec3 flux, float diameter, out Splat s) {
     s = NO_SPLAT;
     float scale = 1.0;
-    int layer = l.map;
+    int layer = int(maps_views.data[l.map].layer);
 #ifdef VARYING
     int level = level_of(diameter);
     if (level >= LEVELS) return false;
 #ifdef MULTIRES
     scale = exp2(-float(level));
-    layer = l.map * LEVELS + level;
+    layer = layer * LEVELS + level;
 #endif
 #endif
     float reach = scale * float(push.side); // of the level's corner of the layer

@@ -59,19 +59,19 @@ vec3 texel_flux(vec2 xy01, int map, ivec2 size) {
 #endif
 }
 
-// Irradiance (W/m^2) at p on the side of unit geometric normal n: flux over the texel's footprint on the receiver.
+// Irradiance (W/m^2) at p on the side of unit geometric normal n: flux over the texel's footprint on the receiver, of all views
+// that hold a share of it.
 vec3 surface_irradiance(vec3 p, vec3 n, uint receiver, vec2 uv) {
     ivec2 size = textureSize(maps_map, 0).xy;
     vec3 sum = vec3(0.0);
-    for (int layer = 0; layer < maps_views.data.length(); layer++) {
-        MapView map = maps_views.data[layer];
-        if (map.receiver != ANY && map.receiver != receiver) continue;
-        View v = map.view;
+    for (int k = 0; k < maps_views.data.length(); k++) {
+        if (!map_is_of(k, receiver, ANY)) continue;
+        MapView map = maps_views.data[k];
         vec2 xy01;
-        if (!map_project(v, p, n, xy01)) continue;
+        if (!(map_share(map, p, n, xy01) > 0.0)) continue;
         // What lands outside is counted as outside, and not in the map.
-        if (any(lessThan(xy01, vec2(0.0))) || any(greaterThan(xy01, vec2(1.0)))) continue;
-        sum += texel_flux(xy01, layer, size) / view_texel_area(v, size, xy01, p, n);
+        if (any(lessThan(xy01, map.low)) || any(greaterThan(xy01, map.high))) continue;
+        sum += texel_flux(xy01, int(map.layer), size) / view_texel_area(map.view, size, xy01, p, n);
     }
     return sum;
 }

@@ -61,6 +61,8 @@ pub struct Job<'a> {
     pub scene: &'a Scene,
     /// The rectangles to cover: the receiver region or the scene's extent first, then what else may be seen.
     pub receivers: &'a [Receiver],
+    /// All objects that may be seen lit, whatever their shape.
+    pub seen: &'a [usize],
     /// Pixels of the picture.
     pub size: [u32; 2],
     /// All that the scene holds.

@@ -83,6 +83,14 @@ pub fn receivers(scene: &Scene, camera: &str) -> Vec<Receiver> {
     [scene.extent.clone()].into_iter().chain(others).map(|patch| Receiver::new(scene, &patch)).collect()
 }
 
+/// The objects that a camera may see lit: through `region` its receiver alone; else it and every other diffuse one that
+/// cameras see, whatever its shape.
+pub fn receiving(scene: &Scene, camera: &str) -> Vec<usize> {
+    let diffuse = |object: &Object| object.visible_to_camera && !scene.materials[object.material].is_specular();
+    let shown = |&k: &usize| k == scene.region.receiver || camera != "region" && diffuse(&scene.objects[k]);
+    (0..scene.objects.len()).filter(shown).collect()
+}
+
 /// All objects that refract or reflect.
 pub fn specular(scene: &Scene) -> Extent {
     objects(scene, |o| scene.materials[o.material].is_specular())

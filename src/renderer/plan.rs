@@ -131,6 +131,7 @@ fn photon_passes(
     }
     let class = light::paths(scene, settings);
     let receivers = extents::receivers(scene, &job.camera);
+    let seen = extents::receiving(scene, &job.camera);
     let emissions = light::emissions(scene, settings, &receivers[0].patch)?;
     let reason = match job.providers.surface {
         None => Some("no method was asked for"),
@@ -159,6 +160,7 @@ fn photon_passes(
         settings,
         scene,
         receivers: &receivers,
+        seen: &seen,
         size: job.size,
         everything,
         emissions: &emissions,

@@ -14,6 +14,9 @@ struct MapView {
     view: ViewData,
     receiver: u32,
     light: u32,
+    layer: u32,
+    sides: u32,
+    window: [[f32; 2]; 2],
 }
 
 const ANY: u32 = u32::MAX;

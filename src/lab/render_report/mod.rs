@@ -283,7 +283,7 @@ fn outside_map(account: &Account, camera: &str) -> Option<String> {
     (share > MISSING).then(|| {
         format!(
             "{:.1} % of the flux that arrives at receivers falls outside the caustic map (beside the rectangle on the \
-             region's receiver, or on what is no quad) and is not shown; \
+             region's receiver, or on what has no part of the map) and is not shown; \
              widen `[{patch}]`, such as by --set scene.{patch}.half=[U, V] (the receiver's size is the limit), \
              or turn the receiver so that its lit side, u × v, faces the light",
             100.0 * share

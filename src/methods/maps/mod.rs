@@ -13,6 +13,7 @@ mod sparse;
 mod splats;
 mod sums;
 mod views;
+mod windows;
 
 use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
 use cells::Cells;
@@ -79,8 +80,17 @@ static CULL: Choice = Choice {
 static RECEIVERS: Choice = Choice {
     key: "maps.receivers",
     default: "all",
-    words: &["all", "region"],
-    doc: "all: a layer of the map for each diffuse quad that the camera may see; region: for the region's receiver alone",
+    words: &["all", "quads", "region"],
+    doc: "what holds light that the camera may see: quads: a layer of the map for each diffuse quad; all: windows in further \
+          layers for other diffuse shapes and the backs of quads, too; region: a layer for the region's receiver alone",
+};
+
+static BIND: Choice = Choice {
+    key: "maps.bind",
+    default: "none",
+    words: &["none", "receiver"],
+    doc: "with light.view = shared: none: a layer for each light, whose light falls on all that lies under a texel, as in the \
+          paper; receiver: for each light, each receiver and each side of it, which holds its light and no one else's",
 };
 
 static SETTINGS: &[Setting] = &[
@@ -99,6 +109,7 @@ static SETTINGS: &[Setting] = &[
     Setting::Choice(&CULL),
     Setting::Choice(&COPY),
     Setting::Choice(&RECEIVERS),
+    Setting::Choice(&BIND),
     Setting::Whole(&ADAPT),
     Setting::Whole(&MOST),
 ];
@@ -137,6 +148,7 @@ static CHAIN: &[Link] = &[
             "maps.cull",
             "maps.copy",
             "maps.receivers",
+            "maps.bind",
             "maps.adapt",
             "maps.adapt_most",
             "light.tile",
@@ -209,9 +221,9 @@ impl Method for Maps {
     fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
         let axes = Axes::checked(job.settings)?;
         let side = job.settings.whole(&SIDE);
-        let views = views::receiving(job, side, job.settings.whole(&SPLAT_SIZE));
+        let views = views::receiving(job, axes, side, job.settings.whole(&SPLAT_SIZE));
         let splats = Splats::of(axes, job.settings);
-        let layers = views.len() as u32 * splats.levels();
+        let layers = views::layers(&views, splats.levels())?;
         let views = job.plan.upload("maps/views", &views);
         let fixed = sums::fixed(job, axes, side, layers);
         cells::check(axes, &fixed)?;

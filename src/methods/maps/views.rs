@@ -1,20 +1,33 @@
-//! The views that receive: a layer of the map each.
+//! The views that receive: each a layer of the map, or a window in one.
 
 use glam::DVec2;
 
-use super::{Job, RECEIVERS};
+use super::{Axes, BIND, Job, RECEIVERS, windows};
 use crate::{
     passes::{
+        PlanError,
         extents::Receiver,
         light::{self, Emission},
     },
+    scene::{Object, Shape},
     view::{View, ViewData},
 };
 
 /// Any receiver, or any light (`ANY` of `glsl/maps/views.glsl`).
-const ANY: u32 = u32::MAX;
+pub const ANY: u32 = u32::MAX;
 
-/// A layer of the map as the shaders read it (`MapView` of `glsl/maps/views.glsl`).
+/// Which sides of surfaces a view takes (`SIDES_…` of `glsl/maps/views.glsl`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// Those that face it.
+    Facing,
+    /// Those turned away from it.
+    Away,
+    /// Those that face it, by the square of the cosine.
+    Shared,
+}
+
+/// A view of the map as the shaders read it (`MapView` of `glsl/maps/views.glsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // the members are those of the shader
@@ -22,28 +35,93 @@ pub struct MapView {
     pub view: ViewData,
     pub receiver: u32,
     pub light: u32,
+    pub layer: u32,
+    pub sides: u32,
+    pub low: [f32; 2],
+    pub high: [f32; 2],
+}
+
+impl MapView {
+    /// A view that has a layer to itself.
+    fn whole(view: &View, receiver: u32, light: u32, layer: usize, sides: Sides) -> Self {
+        let (low, high) = ([0.0; 2], [1.0; 2]);
+        Self { view: view.data(), receiver, light, layer: layer as u32, sides: sides as u32, low, high }
+    }
 }
 
 /// Views that receive: one over each receiver's rectangle, which all lights share and which holds that receiver's light
-/// alone; in `shared` mode each light's own view (or each of its points'), which holds whatever it sees, as in the paper.
+/// alone, and windows for what is no rectangle ([`windows`]); in `shared` mode those of [`shared`].
 ///
 /// A margin of half a splat and a texel keeps every splat whole that reaches into the rectangle. Where the receiver
 /// ends before, so does the map, and splats cut there are normalised: no light leaks over the receiver's edge.
-pub fn receiving(job: &Job<'_>, side: u32, diameter: u32) -> Vec<MapView> {
+pub fn receiving(job: &mut Job<'_>, axes: Axes<'_>, side: u32, diameter: u32) -> Vec<MapView> {
     if job.settings.choice(&light::VIEW) == "shared" {
-        let of = |e: &Emission| MapView { view: e.view.data(), receiver: ANY, light: e.lamp };
-        // Bands and tiles that are traced apart share their light's layer.
-        return job.emissions.iter().filter(|e| e.begins_view()).map(of).collect();
+        return shared(job);
     }
-    let full = (0.5 * f64::from(diameter) + 1.0).min(0.25 * f64::from(side));
-    let of = |Receiver { patch, beyond }: &Receiver| {
+    let full = margin(side, diameter);
+    let of = |(layer, Receiver { patch, beyond }): (usize, &Receiver)| {
         let half = DVec2::new(patch.u.length(), patch.v.length());
         let margins = margins(half, *beyond, side, full);
         let view = View::of_rectangle(patch.center, patch.u, patch.v, margins, job.everything);
-        MapView { view: view.data(), receiver: patch.receiver as u32, light: ANY }
+        MapView::whole(&view, patch.receiver as u32, ANY, layer, Sides::Facing)
     };
     let count = if job.settings.choice(&RECEIVERS) == "region" { 1 } else { job.receivers.len() };
-    job.receivers[..count].iter().map(of).collect()
+    let rectangles: Vec<_> = job.receivers[..count].iter().enumerate().map(of).collect();
+    let windows = windows::of_shapes(job, axes, (side, full), rectangles.len());
+    rectangles.into_iter().chain(windows).collect()
+}
+
+/// Layers of the map's image: `levels` for each that the views have.
+///
+/// # Errors
+/// More than every device's images have.
+pub fn layers(views: &[MapView], levels: u32) -> Result<u32, PlanError> {
+    /// `maxImageArrayLayers` of every Vulkan 1.3 device, at least.
+    const MOST: u32 = 256;
+    let layers = views.iter().map(|view| view.layer + 1).max().unwrap_or(1) * levels;
+    if layers <= MOST {
+        return Ok(layers);
+    }
+    Err(PlanError::Refused {
+        what: format!("a caustic map of {layers} layers"),
+        reason: format!("not every device has images of more than {MOST}"),
+        remedy: "set maps.bind=none, light.view=fitted or maps.receivers=region, or lower light.area_samples".into(),
+    })
+}
+
+/// Texels about what a map shows.
+fn margin(side: u32, diameter: u32) -> f64 {
+    (0.5 * f64::from(diameter) + 1.0).min(0.25 * f64::from(side))
+}
+
+/// Each light's own view (or each of its points'), which holds whatever it sees, as in the paper. With `maps.bind =
+/// receiver` one for each receiver and each of its sides, which holds its light alone.
+fn shared(job: &Job<'_>) -> Vec<MapView> {
+    // Bands and tiles that are traced apart share their light's layer.
+    let lights = job.emissions.iter().filter(|e| e.begins_view());
+    if job.settings.choice(&BIND) == "none" {
+        let of = |(layer, e): (usize, &Emission)| MapView::whole(&e.view, ANY, e.lamp, layer, Sides::Facing);
+        return lights.enumerate().map(of).collect();
+    }
+    let kinds = lights.flat_map(|e| job.seen.iter().flat_map(move |&r| sides(job, e, r).map(move |s| (e, r, s))));
+    let of = |(layer, (e, receiver, sides)): (usize, (&Emission, usize, Sides))| {
+        MapView::whole(&e.view, receiver as u32, e.lamp, layer, sides)
+    };
+    kinds.enumerate().map(of).collect()
+}
+
+/// The sides of a receiver that light can fall on, as a light's view sees them: of a quad its back where something
+/// specular lies behind it.
+fn sides(job: &Job<'_>, e: &Emission, receiver: usize) -> impl Iterator<Item = Sides> + use<> {
+    let behind = match job.scene.objects.get(receiver) {
+        Some(Object { shape: Shape::Quad { center, u, v }, .. }) => {
+            let normal = u.cross(*v);
+            let towards = if e.view.perspective { *center - e.view.origin } else { e.view.forward };
+            job.scene.moves() || windows::lies_beyond(job.scene, *center, normal * towards.dot(normal).signum())
+        }
+        _ => true,
+    };
+    [Sides::Facing].into_iter().chain(behind.then_some(Sides::Away))
 }
 
 /// Margins (m) of `full` texels on each side of a rectangle, less where the receiver ends before; with them the
