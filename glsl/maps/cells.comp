@@ -70,41 +70,27 @@ bool has_strays(ivec2 texel, uint way[PHOTONS]) {
     return false;
 }
 
-#ifdef REFINED
-// Whether a photon of the centre is too coarse for what is about it, in any view; the most flux of those in `most`.
-bool is_coarse_photon(ivec2 texel, int photon, uint way, inout float most) {
+// Whether a photon of the centre is too coarse for what is about it, in any view; with `spreads` its light is spread.
+bool is_coarse_photon(ivec2 texel, int photon, uint way, bool spreads, uint number) {
     vec4 hit = hit_at(texel, photon), flux = flux_at(texel, photon);
     if (hit.w == 0.0) return false;
-    bool coarse = false;
+    vec3 n = photon_normal(flux.w);
     for (int map = 0; map < maps_views.data.length(); map++) {
-        if (!(share_of(map, hit.xyz, photon_normal(flux.w), uint(hit.w) - 1u) > 0.0)) continue;
+        float share = share_of(map, hit.xyz, n, uint(hit.w) - 1u);
+        if (!(share > 0.0)) continue;
         Cell cell = cell_about(texel, hit.xyz, way, map);
         vec4 b = bounds(cell);
         if (is_beside_map(b, push.side)) continue;
-        vec3 watts = photon_flux(flux.rgb);
-        most = max(most, watts.r + watts.g + watts.b);
-        coarse = coarse || !is_one_sheet(cell) || is_coarse(cell, b);
-    }
-    return coarse;
-}
-#endif
-
-// Spreads what of a photon of the centre lands in each view.
-void spread_photon(ivec2 texel, int photon, uint way, uint number) {
-    vec4 hit = hit_at(texel, photon), flux = flux_at(texel, photon);
-    if (hit.w == 0.0) return;
-    for (int map = 0; map < maps_views.data.length(); map++) {
-        float share = share_of(map, hit.xyz, photon_normal(flux.w), uint(hit.w) - 1u);
-        if (!(share > 0.0)) continue;
-        Cell cell = cell_about(texel, hit.xyz, way, map);
-        if (is_beside_map(bounds(cell), push.side)) continue;
-        vec3 watts = share * photon_flux(flux.rgb);
-        if (is_one_sheet(cell) && !is_torn(cell)) {
-            book(number, spread_cell(cell, map, watts));
+        bool whole = is_one_sheet(cell);
+        if (!spreads) {
+            if (!whole || is_coarse(cell, b)) return true;
+        } else if (whole && !is_torn(cell)) {
+            book(number, spread_cell(cell, map, share * photon_flux(flux.rgb)));
         } else if (cell.centre.way != 0u) {
-            book(number, put_point(cell.centre.at, map, watts, number));
+            book(number, put_point(cell.centre.at, map, share * photon_flux(flux.rgb), number));
         }
     }
+    return false;
 }
 
 void main() {
@@ -121,12 +107,14 @@ void main() {
     bool coarse = has_strays(texel, way);
     float most = 0.0; // W, all bands
     for (int photon = 0; photon < PHOTONS; photon++) {
-        coarse = is_coarse_photon(texel, photon, way[photon], most) || coarse;
+        vec3 flux = photon_flux(flux_at(texel, photon).rgb);
+        most = max(most, flux.r + flux.g + flux.b);
+        coarse = coarse || is_coarse_photon(texel, photon, way[photon], false, number);
     }
     if (coarse) {
         list_cell(push.view, 0u, texel, most);
         return;
     }
 #endif
-    for (int photon = 0; photon < PHOTONS; photon++) spread_photon(texel, photon, way[photon], number);
+    for (int photon = 0; photon < PHOTONS; photon++) is_coarse_photon(texel, photon, way[photon], true, number);
 }

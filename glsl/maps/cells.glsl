@@ -59,6 +59,20 @@ vec2 bend(Cell c) {
     return vec2(beside, beside / max(across, LEAST));
 }
 
+// What makes a cell worth tracing finer; `b` are its bounds. Within WIDE texels its light is taken as even: fewer where
+// what is listed may be listed again.
+bool is_coarse(Cell c, vec4 b) {
+    const float TEXELS = 0.5; // below it a bend is not seen
+    const float SHARE = 0.05;
+#if defined(CELLS_LEVELS) && CELLS_LEVELS > 1
+    const float WIDE = 512.0;
+#else
+    const float WIDE = 4096.0;
+#endif
+    vec2 bent = bend(c), size = b.zw - b.xy;
+    return bent.x > TEXELS && bent.y > SHARE || size.x * size.y > WIDE;
+}
+
 // Whether the light of neighbouring rays parts within the cell, at a crease or behind an edge: its triangles would
 // reach over places where none lands.
 bool is_torn(Cell c) {

@@ -103,32 +103,33 @@ Samples cell_samples(int number, bool whole) {
     return s;
 }
 
-Cell cell_of(Samples s, int photon, int map) {
-    Arrival a = arrivals[s.centre][photon];
+// What lies about a photon of a cell's centre, in a view's layer.
+Cell cell_of(Samples s, Arrival a, int map) {
     Cell c;
     c.centre = landed_at(a.p, a.way, map);
     for (int k = 0; k < 4; k++) c.corner[k] = by_way(s.corner[k], a.way, map);
     return c;
 }
 
+// What of a photon's flux goes to a view's layer.
 float share_of_arrival(Arrival a, int map) {
     return a.way == 0u ? 0.0 : share_of(map, a.p, octahedral_unpack(a.normal), a.receiver);
 }
 
-// What of a flux (W) about the centre of a smaller cell lands in a view's layer.
+// What of a flux (W) about the centre of a cell lands in a view's layer.
 vec3 put_cell(Cell c, int map, vec3 flux, uint slot) {
     if (c.centre.way == 0u) return vec3(0.0);
     if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, map, flux, slot);
     return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, map, flux);
 }
 
-// What of the flux of a photon of a cell's centre lands in the map.
+// What of a photon's of a cell's centre lands in the map.
 vec3 take(Samples s, int photon, uint slot) {
     Arrival a = arrivals[s.centre][photon];
     vec3 got = vec3(0.0);
     for (int map = 0; map < maps_views.data.length(); map++) {
         float share = share_of_arrival(a, map);
-        if (share > 0.0) got += put_cell(cell_of(s, photon, map), map, share * a.flux, slot);
+        if (share > 0.0) got += put_cell(cell_of(s, a, map), map, share * a.flux, slot);
     }
     return got;
 }
@@ -136,46 +137,43 @@ vec3 take(Samples s, int photon, uint slot) {
 #ifdef DEEPER
 shared bool deeper[FINER * FINER];
 
-bool went(int number, uint way) {
-    for (int k = 0; k < PHOTONS; k++) {
-        if (arrivals[number][k].way == way) return true;
+// Whether a photon of a cell's centre is too coarse for what is about it, in any view.
+bool is_coarse_arrival(Samples s, Arrival a) {
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        if (!(share_of_arrival(a, map) > 0.0)) continue;
+        Cell c = cell_of(s, a, map);
+        vec4 b = bounds(c);
+        if (!is_beside_map(b, push.side) && (!is_one_sheet(c) || is_coarse(c, b))) return true;
     }
     return false;
 }
 
-bool lands_in_map(Arrival a) {
+// Whether a corner's photon lands in the map by a way that none of the centre's went.
+bool is_stray(Samples s, Arrival a) {
+    if (a.way == 0u) return false;
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        if (arrivals[s.centre][photon].way == a.way) return false;
+    }
     for (int map = 0; map < maps_views.data.length(); map++) {
-        if (a.way == 0u || !map_is_of(map, a.receiver, push.light)) continue;
+        if (!map_is_of(map, a.receiver, push.light)) continue;
         Corner c = landed_at(a.p, a.way, map);
         if (c.way != 0u && !is_beside_map(vec4(c.at, c.at), push.side)) return true;
     }
     return false;
 }
 
-// The flux (W, all bands) of a cell's brightest photon, where it is worth tracing finer in any view; else none.
+// The flux (W, all bands) of the brightest photon for which a cell is worth tracing finer; none, if it is not.
 float coarse_flux(Samples s) {
-    bool coarse = false;
     float most = 0.0;
     for (int photon = 0; photon < PHOTONS; photon++) {
         Arrival a = arrivals[s.centre][photon];
-        for (int map = 0; map < maps_views.data.length(); map++) {
-            if (!(share_of_arrival(a, map) > 0.0)) continue;
-            Cell c = cell_of(s, photon, map);
-            vec4 b = bounds(c);
-            if (is_beside_map(b, push.side)) continue;
-            coarse = coarse || !is_one_sheet(c) || is_coarse(c, b);
-            most = max(most, a.flux.r + a.flux.g + a.flux.b);
+        if (is_coarse_arrival(s, a)) most = max(most, a.flux.r + a.flux.g + a.flux.b);
+        for (int k = 0; k < 4; k++) {
+            Arrival corner = arrivals[s.corner[k]][photon];
+            if (is_stray(s, corner)) most = max(most, corner.flux.r + corner.flux.g + corner.flux.b);
         }
     }
-    for (int k = 0; k < 4; k++) {
-        for (int photon = 0; photon < PHOTONS; photon++) {
-            Arrival a = arrivals[s.corner[k]][photon];
-            if (went(s.centre, a.way) || !lands_in_map(a)) continue;
-            coarse = true; // light that came by a way that none of the centre's went
-            most = max(most, a.flux.r + a.flux.g + a.flux.b);
-        }
-    }
-    return coarse ? most : 0.0;
+    return most;
 }
 #endif
 

@@ -29,15 +29,6 @@ uint least_octave(uint row) {
 #endif
 
 #ifdef LISTS
-// What makes a cell worth tracing finer; `b` are its bounds.
-bool is_coarse(Cell c, vec4 b) {
-    const float TEXELS = 0.5; // below it a bend is not seen
-    const float SHARE = 0.05;
-    const float WIDE = CELLS_LEVELS > 1 ? 512.0 : 4096.0; // texels: within them light is taken as even
-    vec2 bent = bend(c), size = b.zw - b.xy;
-    return bent.x > TEXELS && bent.y > SHARE || size.x * size.y > WIDE;
-}
-
 layout(set = 0, binding = 30, scalar) writeonly buffer Next { uvec2 data[]; } cells_next;
 
 // The octave of a flux (W, all bands) above a unit of the map's sums.

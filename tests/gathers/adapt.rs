@@ -1,0 +1,81 @@
+//! Adaptive emission: cells traced finer level by level bring what arrives, the same at any limit, and tell what they leave.
+
+use super::common::{
+    gpu, job,
+    picture::{Picture, picture},
+};
+use nephroid::{
+    gpu::Gpu,
+    renderer::{self, Counted, Frame},
+};
+
+/// Flux deposited against what arrived: as of cells that are traced finer once; measured 1·10⁻⁷.
+const EXACT: f64 = 1e-5;
+/// Of even light, where cells of four levels lie side by side, at the receiver's edge; measured 3·10⁻⁶.
+const SEAM: f64 = 1e-4;
+
+fn adapted(gpu: &Gpu, scene: &str, set: &[(&str, &str)]) -> (Picture, Counted) {
+    let all: Vec<_> = [("maps.splat", "cells"), ("maps.side", "256")].iter().chain(set).copied().collect();
+    let picture = picture(gpu, &job(scene, &all, "region", [24, 24]));
+    let counted = picture.energy.counted.expect("cells count themselves");
+    (picture, counted)
+}
+
+#[test]
+fn each_level_brings_what_arrives_and_cuts_finer() {
+    let gpu = gpu();
+    let of = ["0", "1", "2"].map(|levels| adapted(&gpu, "bunny", &[("light.side", "16"), ("maps.adapt", levels)]));
+    for (picture, counted) in &of {
+        let ratio = picture.energy.ratio.expect("light arrives");
+        println!("{:+.1e} {counted:?}", ratio - 1.0);
+        assert!((ratio - 1.0).abs() <= EXACT, "{counted:?}");
+        assert_eq!(counted.left, 0);
+    }
+    let [none, once, twice] = [0, 1, 2].map(|k| of[k].1);
+    assert_eq!((none.refined, none.samples), (0, 16 * 16 + 17 * 17), "uniform emission traces centres and corners");
+    assert!(twice.refined > once.refined && twice.samples == none.samples + 41 * twice.refined);
+    assert!(twice.points_w < 0.7 * once.points_w && once.points_w < 0.7 * none.points_w, "{none:?} {once:?} {twice:?}");
+}
+
+#[test]
+fn what_is_too_much_for_a_level_is_left_and_counted() {
+    let gpu = gpu();
+    let set = [("light.side", "16"), ("maps.adapt", "2"), ("maps.adapt_most", "40")];
+    let (mut picture, counted) = adapted(&gpu, "bunny", &set);
+    assert!(counted.refined <= 2 * 40 && counted.left > 0, "{counted:?}");
+    assert_eq!(counted.samples, 16 * 16 + 17 * 17 + 41 * counted.refined + 5 * counted.left);
+    assert!((picture.energy.ratio.unwrap() - 1.0).abs() <= EXACT, "{:?}", picture.energy);
+    let before = picture.map().0;
+    picture.renderer.frame(&Frame::default()).unwrap();
+    assert_eq!(before, picture.map().0, "which are left is no chance");
+}
+
+#[test]
+fn no_seam_shows_where_levels_meet() {
+    // Light through a flat sheet is even. Cells that the floor's edge cuts go down four levels; those within do not.
+    let gpu = gpu();
+    let (picture, counted) = adapted(&gpu, "flat-water", &[("light.side", "31"), ("maps.adapt", "3")]);
+    let lit = picture.mean("irradiance.caustic");
+    let middle = lit[lit.len() / 2 + 12];
+    let worst = lit.iter().map(|e| (e / middle - 1.0).abs()).fold(0.0, f64::max);
+    println!("{worst:.1e} of {middle:.2}, {counted:?}");
+    assert!(counted.refined > 500 && middle > 0.0 && worst <= SEAM, "{worst} of {middle}, {counted:?}");
+}
+
+#[test]
+fn levels_are_planned_where_they_can_be() {
+    let passes = |set: &[(&str, &str)]| {
+        let plan = renderer::plan(&job("glass-sphere", set, "region", [8, 8])).unwrap().plan;
+        let names = plan.passes.iter().filter(|pass| pass.name.starts_with("maps/cells.refine"));
+        (names.map(|pass| pass.name.clone()).collect::<Vec<_>>(), plan)
+    };
+    let cells = ("maps.splat", "cells");
+    assert_eq!(
+        passes(&[cells, ("maps.adapt", "3")]).0,
+        ["maps/cells.refine", "maps/cells.refine.1", "maps/cells.refine.2"]
+    );
+    for set in [[cells, ("maps.adapt", "0")], [cells, ("light.tracer", "march")]] {
+        let (names, plan) = passes(&set);
+        assert!(names.is_empty() && plan.left_out.iter().any(|left| left.name == "maps/cells.refine"), "{set:?}");
+    }
+}
