@@ -32,10 +32,13 @@ fn apart(gpu: &Gpu, scene: &str, set: &[(&str, &str)], tile: &str) -> f64 {
     apart
 }
 
+/// A scene, what is set, and the side of tiles.
+type Case = (&'static str, &'static [(&'static str, &'static str)], &'static str);
+
 #[test]
 fn tiles_sum_to_the_picture_of_one_bit_by_bit() {
     let gpu = gpu();
-    let cases: [(&str, &[(&str, &str)], &str); 4] = [
+    let cases: [Case; 4] = [
         ("room", &[], HALF), // three lights, several photons a sample
         ("bunny", &[("maps.gather", "cells")], ODD),
         ("glass-sphere", &[("light.view", "shared"), ("light.tracer", "march")], ODD),
