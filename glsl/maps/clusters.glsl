@@ -11,7 +11,7 @@ const float SEVERAL = -1.0;
 
 struct Cluster {
     vec3 flux;   // W
-    float place; // the receiver and the map's layer that all share, from 1 on; NOWHERE without a photon, or SEVERAL
+    float place; // the receiver and the map's view that all share, from 1 on; NOWHERE without a photon, or SEVERAL
     vec2 mean;   // flux-weighted, texels of the map
     vec3 spread; // covariance xx, yy, xy, texels^2
     vec4 bounds; // least and greatest, texels
@@ -25,8 +25,8 @@ Cluster cluster_of(Landed l, vec3 flux, int map_side) {
     return Cluster(flux, place, at, vec3(0.0), vec4(at, at));
 }
 
-// The map's layer of a cluster that has one.
-int layer_of_place(float place) {
+// The map's view of a cluster that has one.
+int view_of_place(float place) {
     return (int(place) - 1) % maps_views.data.length();
 }
 

@@ -12,12 +12,12 @@
 // Of a cluster with exact books.
 bool cluster_splat(ivec3 at, out Splat s) {
     vec4 flux = texelFetch(pyramid_flux, at, 0), mean = texelFetch(pyramid_mean, at, 0);
-    int layer = layer_of_place(flux.a);
+    int view = view_of_place(flux.a);
     if (push.diameter > 1.0) {
         vec3 spread = vec3(mean.zw, texelFetch(pyramid_lean, at, 0).r);
-        if (shaped_splat_of(mean.xy, flux.rgb, layer, spread, push.diameter, s)) return true;
+        if (shaped_splat_of(mean.xy, flux.rgb, view, spread, push.diameter, s)) return true;
     }
-    Landed l = Landed(vec3(0.0), vec3(0.0), 0u, mean.xy / float(push.side), layer);
+    Landed l = Landed(vec3(0.0), vec3(0.0), 0u, mean.xy / float(push.side), view);
     return splat_of(l, flux.rgb, push.diameter, s);
 }
 #endif

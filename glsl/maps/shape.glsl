@@ -12,7 +12,7 @@ const float LOWERED = 0.6102;
 // A fixed splat of a diameter beyond one texel that has a covariance (xx, yy, xy, texels^2) on top of its own: along rows a
 // Gaussian of standard deviation sqrt(Sxx), and in each column one of sqrt(Syy - Sxy^2 / Sxx) about a centre that moves by
 // Sxy / Sxx a column.
-bool shaped_splat_of(vec2 at, vec3 flux, int layer, vec3 covariance, float diameter, out Splat s) {
+bool shaped_splat_of(vec2 at, vec3 flux, int view, vec3 covariance, float diameter, out Splat s) {
     s = NO_SPLAT;
     vec3 sum = covariance / LOWERED + 0.0625 * diameter * diameter * vec3(1.0, 1.0, 0.0);
     float lean = sum.z / sum.x, d = 4.0 * sqrt(sum.x), rows = 4.0 * sqrt(max(sum.y - lean * sum.z, 0.0));
@@ -27,7 +27,7 @@ bool shaped_splat_of(vec2 at, vec3 flux, int layer, vec3 covariance, float diame
         norm += splat_weight(beside, 0.0, d) * splat_norm(p.y + lean * beside, rows, push.side);
     }
     if (!(norm > 0.0)) return false;
-    s = Splat(flux / norm, 1.0 / norm, p, d, vec2(rows, lean), push.side, layer);
+    s = Splat(flux / norm, 1.0 / norm, p, d, vec2(rows, lean), push.side, int(maps_views.data[view].layer));
     return true;
 }
 

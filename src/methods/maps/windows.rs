@@ -44,8 +44,13 @@ pub fn of_shapes(job: &mut Job<'_>, axes: Axes<'_>, (side, full): (u32, f64), fi
     if shown.is_empty() {
         return Vec::new();
     }
-    if !matches!(axes.splat, "fixed" | "cells") {
-        let reason = format!("maps.splat = {}: its splats reach from one window into the next", axes.splat);
+    let wide = match axes {
+        Axes { splat: "fixed", merge: "exact", .. } => Some("maps.merge = exact".to_owned()),
+        Axes { splat: "fixed" | "cells", .. } => None,
+        _ => Some(format!("maps.splat = {}", axes.splat)),
+    };
+    if let Some(wide) = wide {
+        let reason = format!("{wide}: its splats reach from one window into the next");
         job.plan.leave_out("maps/windows", reason);
         return Vec::new();
     }
