@@ -32,13 +32,13 @@ type Fault = Box<dyn std::error::Error>;
 const SCENES: [&str; 3] = ["glass-sphere", "water", "bunny"];
 const ERRORS: [f64; 2] = [1e-2, 1e-3];
 /// What is tried.
-const GATHERS: [&str; 2] = ["own", "cells"];
+const GATHERS: [&str; 4] = ["own", "cells", "elliptic", "combine-exact"];
 const PHOTONS: [&str; 6] = ["32", "64", "128", "256", "512", "1024"];
 const MAPS: [&str; 3] = ["128", "256", "512"];
 /// Pixels a side, those of the references.
 const SIDE: u32 = 128;
 /// Frames before timing begins, and timed.
-const FRAMES: [usize; 2] = [2, 5];
+const FRAMES: [usize; 2] = [1, 5];
 /// The most time of the CPU's tracer for an error.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Of the CPU's time that a frame takes.
@@ -108,8 +108,8 @@ fn to_errors(gpu: &Gpu, scene: &Arc<Scene>) -> Result<(), Fault> {
     let (exact, _) = Layers::from_exr(&std::fs::read(file)?)?;
     let mut tried = Vec::new();
     for gather in GATHERS {
-        for photons in PHOTONS {
-            for map in MAPS {
+        for map in MAPS {
+            for photons in PHOTONS {
                 let set = [("maps.gather", gather), ("light.side", photons), ("maps.side", map)];
                 let mut renderer = renderer(gpu, scene, &set)?;
                 let mut frame = || renderer.frame(&Frame::default()).map(|times| times.span_ms / 1e3);
@@ -117,15 +117,19 @@ fn to_errors(gpu: &Gpu, scene: &Arc<Scene>) -> Result<(), Fault> {
                 let seconds = (0..FRAMES[1]).map(|_| frame()).collect::<Result<Vec<_>, _>>()?;
                 let errors = errors(scene, &renderer.layers()?, &exact);
                 tried.push(Tried { seconds, errors, what: format!("{gather}, {photons}² photons, map {map}²") });
+                if errors.iter().all(|error| *error <= ERRORS[1]) {
+                    break; // more photons only take longer
+                }
             }
         }
     }
+    let cpu = on_cpu(scene, &exact);
     for (measure, name) in ["relmse", "relmse-standard"].into_iter().enumerate() {
-        for error in ERRORS {
+        for (at, error) in ERRORS.into_iter().enumerate() {
             let of = format!("{name}-{error:.0e}/{}-{SIDE}", scene.name);
             let reached = tried.iter().filter(|t| t.errors[measure] <= error);
             let best = reached.min_by(|a, b| median(&a.seconds).total_cmp(&median(&b.seconds)));
-            let (cpu, extrapolated) = on_cpu(scene, &exact, measure, error);
+            let (cpu, extrapolated) = cpu[measure][at];
             line(json!({ "name": format!("gathers/cpu-to-{of}"), "unit": "s", "samples": [cpu], "median": cpu,
                 "extrapolated": extrapolated }));
             let Some(best) = best else {
@@ -142,26 +146,39 @@ fn to_errors(gpu: &Gpu, scene: &Arc<Scene>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Seconds on all cores until photons of the truth reach the error, and whether that was extrapolated. What the look at the
-/// error takes is not counted.
-fn on_cpu(scene: &Scene, exact: &Layers, measure: usize, error: f64) -> (f64, bool) {
+/// By measure and error, seconds on all cores until photons of the truth reach it, and whether that was extrapolated. What
+/// the looks at the error take is not counted.
+fn on_cpu(scene: &Scene, exact: &Layers) -> [[(f64, bool); 2]; 2] {
     let space = Space::new(scene);
     let goal = Goal { photons: None, noise: Some(f64::MIN_POSITIVE) };
     let (paths, camera) = (scene.paths, "region".to_owned());
     let task = Task { estimator: Estimator::Photons, paths, camera, size: [SIDE; 2], seed: 1, goal };
     let mut run = Run::new(&space, &scene.cameras["region"], &task);
-    let (mut spent, mut since, mut next, mut now) = (Duration::ZERO, Instant::now(), 1, f64::INFINITY);
+    let (mut spent, mut since, mut next) = (Duration::ZERO, Instant::now(), 1);
+    let (mut now, mut reached) = ([f64::INFINITY; 2], [[None; 2]; 2]);
     run.advance(rayon::current_num_threads(), |run, standing| {
         spent += since.elapsed();
         if standing.photons >= next || spent >= PATIENCE {
             // Looked at every tenth more photons: no more of them is wasted.
             next = standing.photons + standing.photons / 10;
-            now = errors(scene, &run.layers().expect("layers"), exact)[measure];
+            now = errors(scene, &run.layers().expect("layers"), exact);
+            for (reached, now) in reached.iter_mut().zip(now) {
+                for (reached, error) in reached.iter_mut().zip(ERRORS).filter(|(_, error)| now <= *error) {
+                    reached.get_or_insert(spent.as_secs_f64());
+                }
+            }
         }
         since = Instant::now();
-        if now <= error || spent >= PATIENCE { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let done = reached.iter().flatten().all(Option::is_some) || spent >= PATIENCE;
+        if done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    if now <= error { (spent.as_secs_f64(), false) } else { (spent.as_secs_f64() * now / error, true) }
+    let spent = spent.as_secs_f64();
+    std::array::from_fn(|measure| {
+        std::array::from_fn(|at| match reached[measure][at] {
+            Some(seconds) => (seconds, false),
+            None => (spent * now[measure] / ERRORS[at], true),
+        })
+    })
 }
 
 fn line(value: serde_json::Value) {
