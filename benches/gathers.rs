@@ -163,7 +163,7 @@ fn on_cpu(scene: &Scene, exact: &Layers) -> [[(f64, bool); 2]; 2] {
             next = standing.photons + standing.photons / 10;
             now = errors(scene, &run.layers().expect("layers"), exact);
             for (reached, now) in reached.iter_mut().zip(now) {
-                for (reached, error) in reached.iter_mut().zip(ERRORS).filter(|(_, error)| now <= *error) {
+                for (reached, _) in reached.iter_mut().zip(ERRORS).filter(|(_, error)| now <= *error) {
                     reached.get_or_insert(spent.as_secs_f64());
                 }
             }
