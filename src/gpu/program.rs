@@ -184,7 +184,8 @@ impl Program {
                 match &pass.work {
                     Work::Compute { groups, local, .. } => {
                         let (groups, points) = self.groups(groups)?;
-                        counters.invocations = Some(groups.map(u64::from).iter().product::<u64>() * u64::from(*local));
+                        let groups = groups.map(|groups| groups.map(u64::from).iter().product::<u64>());
+                        counters.invocations = groups.map(|groups| groups * u64::from(*local));
                         counters.points = points;
                     }
                     Work::Copy { .. } => {}
@@ -202,14 +203,16 @@ impl Program {
             .collect()
     }
 
-    /// Work groups of a dispatch, and the points that they took where the device counted them.
-    fn groups(&self, groups: &Groups) -> Result<([u32; 3], Option<u64>), GpuError> {
+    /// Work groups of a dispatch, and the points that they took where the device counted them. A row without any tells
+    /// neither: a later pass of the frame may have begun it anew.
+    fn groups(&self, groups: &Groups) -> Result<(Option<[u32; 3]>, Option<u64>), GpuError> {
         match *groups {
-            Groups::Fixed(groups) => Ok((groups, None)),
+            Groups::Fixed(groups) => Ok((Some(groups), None)),
             Groups::Counted(Row { rows, row }) => {
                 let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read_buffer(rows)?);
                 let first = row as usize * Row::WORDS;
-                Ok(([words[first], words[first + 1], words[first + 2]], Some(u64::from(words[first + 3]))))
+                let [x, y, z, points] = std::array::from_fn(|at| words[first + at]);
+                Ok(if x > 0 { (Some([x, y, z]), Some(points.into())) } else { (None, None) })
             }
         }
     }

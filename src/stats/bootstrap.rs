@@ -28,6 +28,11 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// What was counted: there is no doubt about it.
+    pub fn exact(value: f64) -> Self {
+        Self { value, low: value, high: value }
+    }
+
     /// Whether `x` lies in it, its ends included. Nothing lies in an interval with an end that is no number.
     pub fn contains(&self, x: f64) -> bool {
         self.low <= x && x <= self.high

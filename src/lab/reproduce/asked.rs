@@ -3,12 +3,12 @@
 use super::{
     columns::{Part, Variant},
     measure::{Measured, Run},
-    report::Known,
     subject::Subject,
 };
 use crate::{
     gpu::FrameTimes,
     lab::timing::{Ratio, Summary},
+    stats::Interval,
 };
 
 /// A part of the frames of one variant at one N.
@@ -53,8 +53,8 @@ const FIRST_FEW: usize = 2;
 const CHILDREN: f64 = 4.0;
 
 impl Pick {
-    fn of(self, all: impl Iterator<Item = Known>) -> Option<Known> {
-        let by = |a: &Known, b: &Known| a.value.total_cmp(&b.value);
+    fn of(self, all: impl Iterator<Item = Interval>) -> Option<Interval> {
+        let by = |a: &Interval, b: &Interval| a.value.total_cmp(&b.value);
         match self {
             Self::Least => all.min_by(by),
             Self::Most => all.max_by(by),
@@ -82,16 +82,17 @@ impl Asked {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn measure(&self, run: &Run) -> Result<Known, String> {
+    pub fn measure(&self, run: &Run) -> Result<Interval, String> {
         match self {
             Self::Time(place) => {
                 let at = run.find(*place)?;
                 let samples = run.timed.series[at].frames.iter().map(|frame| place.part.of(&run.all[at].stages, frame));
-                Ok(Summary::of(samples.collect()).into())
+                let Summary { median: value, low, high, .. } = Summary::of(samples.collect());
+                Ok(Interval { value, low, high })
             }
-            Self::Times(a, b) => Ok(ratio(run, *b, *a)?.into()),
+            Self::Times(a, b) => Ok(ratio(run, *b, *a)?.interval),
             Self::Saved(pairs, pick) => {
-                let saved = |r: Ratio| Known {
+                let saved = |r: Ratio| Interval {
                     value: 1.0 - r.interval.value,
                     low: 1.0 - r.interval.high,
                     high: 1.0 - r.interval.low,
@@ -100,20 +101,20 @@ impl Asked {
                 pick.of(all.into_iter()).ok_or_else(|| run.why(pairs.first().map_or(0, |(a, _)| a.side)))
             }
             Self::PaysFrom(pairs) => pays_from(run, pairs),
-            Self::Points(place) => Ok(Known::exact(points(run, *place)?)),
+            Self::Points(place) => Ok(Interval::exact(points(run, *place)?)),
             Self::Fewer(place) => {
                 let emitted = run.all[run.find(*place)?].emitted;
-                Ok(Known::exact(emitted as f64 / points(run, *place)?.max(1.0)))
+                Ok(Interval::exact(emitted as f64 / points(run, *place)?.max(1.0)))
             }
             Self::Dropped(place, pick) => {
                 let dropped = dropped(&run.all[run.find(*place)?]);
                 let none = || "N is too small for so many levels".to_owned();
-                pick.of(dropped.into_iter().map(Known::exact)).ok_or_else(none)
+                pick.of(dropped.into_iter().map(Interval::exact)).ok_or_else(none)
             }
             Self::Triangles(subject) => {
                 let of = |m: &&Measured| m.variant.subject == *subject;
                 let found = run.all.iter().find(of).ok_or_else(|| "was not run".to_owned())?;
-                Ok(Known::exact(found.triangles as f64))
+                Ok(Interval::exact(found.triangles as f64))
             }
         }
     }
@@ -132,21 +133,21 @@ fn ratio(run: &Run, a: Place, b: Place) -> Result<Ratio, String> {
 }
 
 /// Between the N that were run, as if ratios were powers of N.
-fn pays_from(run: &Run, pairs: &[(Place, Place)]) -> Result<Known, String> {
+fn pays_from(run: &Run, pairs: &[(Place, Place)]) -> Result<Interval, String> {
     let ratios: Vec<(f64, f64)> =
         pairs.iter().filter_map(|(a, b)| Some((f64::from(a.side), ratio(run, *a, *b).ok()?.interval.value))).collect();
     let (Some(first), Some(last)) = (ratios.first(), ratios.last()) else {
         return Err(run.why(pairs.first().map_or(0, |(a, _)| a.side)));
     };
     let Some(dear) = ratios.iter().rposition(|(_, ratio)| *ratio > 1.0) else {
-        return Ok(Known { value: first.0, low: 0.0, high: first.0 });
+        return Ok(Interval { value: first.0, low: 0.0, high: first.0 });
     };
     let Some(cheap) = ratios.get(dear + 1) else {
         return Err(format!("at no N up to {}", last.0));
     };
     let [from, to] = [ratios[dear], *cheap];
     let along = from.1.ln() / (from.1.ln() - to.1.ln());
-    Ok(Known { value: from.0 * (to.0 / from.0).powf(along), low: from.0, high: to.0 })
+    Ok(Interval { value: from.0 * (to.0 / from.0).powf(along), low: from.0, high: to.0 })
 }
 
 /// Of each step of the traversal beyond the first few, the share of children that are not drawn.
@@ -162,7 +163,7 @@ mod tests {
 
     #[test]
     fn the_least_and_the_most_are_picked() {
-        let all = || [0.3, 0.1, 0.2].into_iter().map(Known::exact);
+        let all = || [0.3, 0.1, 0.2].into_iter().map(Interval::exact);
         assert_eq!(Pick::Least.of(all()).map(|k| k.value), Some(0.1));
         assert_eq!(Pick::Most.of(all()).map(|k| k.value), Some(0.3));
         assert!(Pick::Most.of(std::iter::empty()).is_none());

@@ -1,7 +1,11 @@
 //! Large splats behind `compute`: marked by the dispatch that sums the others in fixed point, then drawn and blended. Which
 //! and in which order does not depend on who comes first, so that the map repeats itself bit by bit.
 
-use super::{Axes, Job, points::Points, sums::Fixed};
+use super::{
+    Axes, Job,
+    points::{Points, SUMMING},
+    sums::Fixed,
+};
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder, Row},
     passes::light,
@@ -19,8 +23,6 @@ pub static RASTER_FROM: Whole = Whole {
 
 /// Kinds of splats of any size. Of ellipses, which are thin, the square that is drawn would be mostly empty.
 const ROUND: [&str; 2] = ["varying", "thin-lens"];
-/// Invocations of the work group that sums (`PREFIX_GROUP` of `glsl/shared/prefix.glsl`).
-const SUMMING: u32 = 256;
 /// Invocations of a work group that marks, and along one of its sides.
 const MARKING: u64 = 64;
 const MARKING_SIDE: u32 = 8;

@@ -15,9 +15,9 @@ use crate::{
     passes::{PlanError, light},
 };
 
-/// Invocations of the work group that sums (`GROUP` of `glsl/maps/points.comp`).
-const SUMMING: u32 = 256;
-/// Splats of a work group (`SPLATS` there).
+/// Invocations of the work group that sums (`PREFIX_GROUP` of `glsl/shared/prefix.glsl`).
+pub const SUMMING: u32 = 256;
+/// Splats of a work group (`SPLATS` of `glsl/maps/gather_points.comp`).
 const SPLATS: u32 = 64;
 
 /// The pyramid over the photons, and what its counts sum to. All views of one size share them.

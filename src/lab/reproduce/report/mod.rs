@@ -24,7 +24,6 @@ use row::{Row, cells, short};
 use shape::{Shape, shape};
 
 pub use catalogue::CatalogueReport;
-pub use row::Known;
 
 /// Light that arrived with one variant at one N.
 #[derive(Clone, Debug, Serialize)]
@@ -198,7 +197,7 @@ impl Report for ReproduceReport {
             ]
         });
         let shape = self.shape.iter().map(|s| {
-            let [measured, interval] = s.measured.cells();
+            let [measured, interval] = cells(Some(&s.measured));
             let within = Cell::text(if s.within { "yes" } else { "no" });
             vec![Cell::text(&s.from), Cell::text(&s.to), Cell::text(short(s.published)), measured, interval, within]
         });

@@ -10,46 +10,14 @@ use crate::{
             columns,
             measure::{Measured, Run},
         },
-        timing::{Ratio, Summary},
     },
     metrics::Measure,
-    stats::write_number,
+    stats::Interval,
 };
 
-/// A value and the interval that it lies in: of times 99 %, of errors 95 %.
-#[derive(Clone, Debug, Serialize)]
-pub struct Known {
-    #[serde(serialize_with = "write_number")]
-    pub value: f64,
-    #[serde(serialize_with = "write_number")]
-    pub low: f64,
-    #[serde(serialize_with = "write_number")]
-    pub high: f64,
-}
-
-impl Known {
-    /// What was counted.
-    pub fn exact(value: f64) -> Self {
-        Self { value, low: value, high: value }
-    }
-}
-
-impl From<Summary> for Known {
-    fn from(s: Summary) -> Self {
-        Self { value: s.median, low: s.low, high: s.high }
-    }
-}
-
-impl From<Ratio> for Known {
-    fn from(r: Ratio) -> Self {
-        Self { value: r.interval.value, low: r.interval.low, high: r.interval.high }
-    }
-}
-
-impl From<Measure> for Known {
-    fn from(m: Measure) -> Self {
-        Self { value: m.value, low: m.low.unwrap_or(0.0), high: m.high.unwrap_or(f64::INFINITY) }
-    }
+/// Of an error, which may have no interval: then anything.
+fn of_error(m: Measure) -> Interval {
+    Interval { value: m.value, low: m.low.unwrap_or(0.0), high: m.high.unwrap_or(f64::INFINITY) }
 }
 
 /// One published figure, and what it is here.
@@ -59,11 +27,11 @@ pub struct Row {
     pub column: String,
     pub unit: &'static str,
     pub published: Option<f64>,
-    pub measured: Option<Known>,
+    pub measured: Option<Interval>,
     /// Measured over published.
     pub ratio: Option<f64>,
     /// Of the picture of the frame that was timed.
-    pub relmse: Option<Known>,
+    pub relmse: Option<Interval>,
     /// Flux in the map over the flux that arrived in it: less where splats are dropped, more where clusters invent light.
     pub kept: Option<f64>,
     /// Points that gathering draws in all, where it draws points.
@@ -112,7 +80,7 @@ impl Row {
         Self {
             measured: Some(measured),
             ratio,
-            relmse: of_one.and_then(|m| m.relmse).map(Known::from),
+            relmse: of_one.and_then(|m| m.relmse).map(of_error),
             kept: of_one.and_then(|m| m.kept),
             points: of_one.and_then(Measured::points),
             ..Self::missing(published, figure, None)
@@ -131,13 +99,8 @@ pub fn short(value: f64) -> String {
     }
 }
 
-impl Known {
-    pub fn cells(&self) -> [Cell; 2] {
-        [Cell::text(short(self.value)), Cell::text(format!("{} to {}", short(self.low), short(self.high)))]
-    }
-}
-
 /// Value and interval, if there are any.
-pub fn cells(known: Option<&Known>) -> [Cell; 2] {
-    known.map_or([Cell::None, Cell::None], Known::cells)
+pub fn cells(known: Option<&Interval>) -> [Cell; 2] {
+    let known = known.map(|k| [short(k.value), format!("{} to {}", short(k.low), short(k.high))]);
+    known.map_or([Cell::None, Cell::None], |texts| texts.map(Cell::text))
 }

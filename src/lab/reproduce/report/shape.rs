@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::row::Known;
+use crate::stats::Interval;
 use crate::{
     gpu::FrameTimes,
     lab::{
@@ -23,7 +23,7 @@ pub struct Shape {
     pub from: String,
     pub to: String,
     pub published: f64,
-    pub measured: Known,
+    pub measured: Interval,
     /// Whether the published ratio lies in the measured interval.
     pub within: bool,
 }
@@ -65,7 +65,7 @@ impl Shape {
             to: name(to.0),
             published,
             within: measured.interval.contains(published),
-            measured: measured.into(),
+            measured: measured.interval,
         })
     }
 }
