@@ -8,5 +8,6 @@ pub mod eye;
 pub mod lamps;
 pub mod light;
 pub mod scene;
+pub mod water;
 
 pub use error::PlanError;
