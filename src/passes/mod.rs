@@ -8,5 +8,7 @@ pub mod eye;
 pub mod lamps;
 pub mod light;
 pub mod scene;
+mod work;
 
 pub use error::PlanError;
+pub use work::Work;
