@@ -144,6 +144,10 @@ pub trait Method: Sync {
         Vec::new()
     }
 
+    /// Whether it shoots photons, which are then counted and reported.
+    fn shoots(&self) -> bool {
+        false
+    }
     /// Its stages, which `plan` lists as left out where the scene cannot show what they make.
     fn stages(&self) -> &'static [&'static str];
     /// What its picture does not show well, and the remedy.

@@ -33,6 +33,11 @@ impl Providers {
         Self { surface: fills(Slot::Surface), medium: fills(Slot::Medium) }
     }
 
+    /// Whether photons are shot, where the scene can show what they make.
+    pub fn shoot(&self) -> bool {
+        self.methods().iter().any(|method| method.shoots())
+    }
+
     /// The distinct methods.
     pub fn methods(&self) -> Vec<&'static dyn Method> {
         let mut all: Vec<&'static dyn Method> = Vec::new();

@@ -205,6 +205,10 @@ impl Method for Maps {
         Axes::of(settings).pairs()
     }
 
+    fn shoots(&self) -> bool {
+        true
+    }
+
     fn stages(&self) -> &'static [&'static str] {
         &["light/photons", "maps/gather", "maps/resolve", "light/account"]
     }
