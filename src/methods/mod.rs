@@ -148,6 +148,10 @@ pub trait Method: Sync {
     fn shoots(&self) -> bool {
         false
     }
+    /// Whether, as set, its slot `surface` is irradiance only up to a scale, which then is fitted wherever errors are told.
+    fn is_relative(&self, _: &Settings) -> bool {
+        false
+    }
     /// Its stages, which `plan` lists as left out where the scene cannot show what they make.
     fn stages(&self) -> &'static [&'static str];
     /// What its picture does not show well, and the remedy.

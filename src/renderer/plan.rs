@@ -15,6 +15,7 @@ use crate::{
         light,
         scene::SceneBuffers,
     },
+    settings::Settings,
 };
 
 /// Who fills each slot; nobody, if the frame shows direct light alone.
@@ -36,6 +37,11 @@ impl Providers {
     /// Whether photons are shot, where the scene can show what they make.
     pub fn shoot(&self) -> bool {
         self.methods().iter().any(|method| method.shoots())
+    }
+
+    /// Whether the slot `surface` is irradiance only up to a scale.
+    pub fn is_relative(&self, settings: &Settings) -> bool {
+        self.surface.is_some_and(|method| method.is_relative(settings))
     }
 
     /// The distinct methods.
