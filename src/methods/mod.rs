@@ -4,6 +4,7 @@
 //! To add one: a room here, a folder of shaders under `glsl/`, and a row in [`ALL`].
 
 pub mod maps;
+pub mod waves;
 
 use crate::{
     gpu::{BufferId, Feature, ImageId},
@@ -170,7 +171,7 @@ pub trait Method: Sync {
 }
 
 /// Every method, sorted by name. Command line, tests and reports iterate over this.
-pub static ALL: &[&dyn Method] = &[&maps::Maps];
+pub static ALL: &[&dyn Method] = &[&maps::Maps, &waves::Waves];
 
 /// The method of that name.
 ///

@@ -287,7 +287,8 @@ impl PlannedMaps {
     fn provide(&self) -> Provided {
         let maps = ["maps_map", "maps_map_1", "maps_map_2", "maps_map_3"].into_iter().zip(&self.maps);
         let reads = maps.map(|(name, &map)| (name, Resource::Image(map))).chain([self.views()]).collect();
-        let surface = SurfaceProvider { file: "maps/surface.glsl", defines: self.splats.defines(), reads };
+        let surface =
+            SurfaceProvider { file: "maps/surface.glsl", defines: self.splats.defines(), reads, offers: Vec::new() };
         Provided {
             surface: Some(surface),
             deposits: self.maps[..1].to_vec(),
