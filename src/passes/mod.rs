@@ -9,5 +9,7 @@ pub mod lamps;
 pub mod light;
 pub mod scene;
 pub mod water;
+mod work;
 
 pub use error::PlanError;
+pub use work::Work;

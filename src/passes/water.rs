@@ -159,8 +159,14 @@ impl Water {
 
     /// For a pass that includes `shared/water.glsl`.
     pub fn provide<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        let pass = pass.defines(&self.defines).offer("water", self.data);
-        self.shape.into_iter().fold(pass, |pass, shape| pass.offer("water_shape", shape))
+        let (defines, offers) = self.parts();
+        offers.into_iter().fold(pass.defines(&defines), |pass, (name, buffer)| pass.offer(name, buffer))
+    }
+
+    /// What [`Self::provide`] defines and offers, for a slot's provider.
+    pub fn parts(&self) -> (Vec<(&'static str, String)>, Vec<(&'static str, BufferId)>) {
+        let shape = self.shape.map(|shape| ("water_shape", shape));
+        (self.defines.clone(), [("water", self.data)].into_iter().chain(shape).collect())
     }
 }
 
@@ -211,6 +217,11 @@ fn relief(
             (defines, plan.upload("water/shape", &vertices))
         }
     }
+}
+
+/// Unit vector out of the water; nothing of other shapes.
+pub fn normal(shape: &Shape) -> DVec3 {
+    frame(shape).map_or(DVec3::ZERO, |frame| frame.normal())
 }
 
 /// The rectangle below a shape that is a height over one.
