@@ -23,10 +23,11 @@ struct WaterRay {
 #endif
 };
 
-// Rays of a light below some cells: a metre z below the plane they lie within start + z slope. xy: least; zw: greatest.
+// Where rays of a light below some cells are at the least and at the greatest depth of all receivers; xy: least, zw: greatest.
+// Rays are straight: between the two they lie within what is between.
 struct WaterBounds {
-    vec4 start;
-    vec4 slope;
+    vec4 near;
+    vec4 far;
 };
 
 struct WaterLight {
@@ -34,6 +35,7 @@ struct WaterLight {
     float radius; // of a sun's disc, rad; 0: none
     vec3 x; // axes of the disc
     vec3 y;
+    vec2 depths; // of all receivers below the plane, m
 };
 
 layout(set = 0, binding = 35, scalar) INVERSE_RAYS buffer WaterRays { WaterRay at[]; } water_rays;

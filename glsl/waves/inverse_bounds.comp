@@ -31,18 +31,19 @@ void main() {
         for (int band = 0; band < INVERSE_BANDS; band++) {
             vec2 reach = slope_reach(ray, band, water_lights.at[light].radius);
             vec2 low = ray.slope[band] - reach, high = ray.slope[band] + reach;
-            vec2 a = ray.start.xy + ray.start.z * low, b = ray.start.xy + ray.start.z * high;
-            join(all.start, min(a, b), max(a, b));
-            join(all.slope, low, high);
+            vec2 down = ray.start.z + water_lights.at[light].depths;
+            vec2 a = down.x * low, b = down.x * high, c = down.y * low, d = down.y * high;
+            join(all.near, ray.start.xy + min(a, b), ray.start.xy + max(a, b));
+            join(all.far, ray.start.xy + min(c, d), ray.start.xy + max(c, d));
         }
 #else
         ivec2 child = 2 * at + ivec2(k & 1, k >> 1);
         if (any(greaterThanEqual(child, level_size(LEVEL - 1)))) continue;
         WaterBounds part = water_bounds.at[bounds_at(light, LEVEL - 1, child)];
-        if (part.start.x > part.start.z) continue;
+        if (part.near.x > part.near.z) continue;
         lit = true;
-        join(all.start, part.start.xy, part.start.zw);
-        join(all.slope, part.slope.xy, part.slope.zw);
+        join(all.near, part.near.xy, part.near.zw);
+        join(all.far, part.far.xy, part.far.zw);
 #endif
     }
     if (!lit) all = WaterBounds(nothing, nothing);

@@ -64,16 +64,22 @@ Place place_of(vec3 p, vec3 n) {
     return place;
 }
 
-// Whether rays within the bounds can land on the place.
-bool may_land(WaterBounds b, Place at) {
-    if (b.start.x > b.start.z) return false;
-    const float ROUNDING = 1e-6; // of the products below
-    vec3 reach = 0.5 * (abs(at.x) + abs(at.y));
-    vec2 room = reach.xy + ROUNDING * (abs(at.p.xy) + abs(at.p.z) * max(abs(b.slope.xy), abs(b.slope.zw)));
-    float z = -at.p.z, top = z - reach.z, foot = z + reach.z;
-    vec2 low = b.start.xy + min(min(top * b.slope.xy, top * b.slope.zw), min(foot * b.slope.xy, foot * b.slope.zw));
-    vec2 high = b.start.zw + max(max(top * b.slope.xy, top * b.slope.zw), max(foot * b.slope.xy, foot * b.slope.zw));
+// Whether rays within the bounds can land on the place; `depth`: shares of the way between the receivers' depths, of its least and
+// its greatest.
+bool may_land(WaterBounds b, Place at, vec2 depth) {
+    if (b.near.x > b.near.z) return false;
+    vec4 top = mix(b.near, b.far, depth.x), foot = mix(b.near, b.far, depth.y);
+    const float ROUNDING = 1e-6; // of the bounds
+    vec2 low = min(top.xy, foot.xy), high = max(top.zw, foot.zw);
+    vec2 room = 0.5 * (abs(at.x.xy) + abs(at.y.xy)) + ROUNDING * (abs(low) + abs(high));
     return all(lessThanEqual(low - room, at.p.xy)) && all(greaterThanEqual(high + room, at.p.xy));
+}
+
+// Of a place that is no deeper or higher than the receivers are.
+vec2 depth_shares(WaterLight from, Place at) {
+    float reach = 0.5 * (abs(at.x.z) + abs(at.y.z)), whole = from.depths.y - from.depths.x;
+    vec2 below = -at.p.z + vec2(-reach, reach) - from.depths.x;
+    return whole > 0.0 ? clamp(below / whole, 0.0, 1.0) : vec2(0.0);
 }
 
 // W that meet the triangle between three corners, without what is turned back there.
@@ -187,21 +193,22 @@ Walk walk_on(Walk walk, bool below) {
 }
 
 // Whether the node is there, and may light the place.
-bool walk_meets(Walk walk, uint light, Place at) {
+bool walk_meets(Walk walk, uint light, Place at, vec2 depth) {
     return all(lessThan(walk.node, level_size(walk.level))) &&
-           may_land(water_bounds.at[bounds_at(light, walk.level, walk.node)], at);
+           may_land(water_bounds.at[bounds_at(light, walk.level, walk.node)], at, depth);
 }
 
 // Finding a cell and asking it are loops of their own, so that invocations of one group do the same thing at the same time.
 vec3 light_below(uint light, Place at) {
     vec3 sum = vec3(0.0);
     WaterLight from = water_lights.at[light];
+    vec2 depth = depth_shares(from, at);
     Walk walk = Walk(LEVELS - 1, ivec2(0));
     while (walk.level < LEVELS) {
-        bool meets = walk_meets(walk, light, at);
+        bool meets = walk_meets(walk, light, at, depth);
         while (walk.level < LEVELS && !(meets && walk.level == 0)) {
             walk = walk_on(walk, meets);
-            meets = walk.level < LEVELS && walk_meets(walk, light, at);
+            meets = walk.level < LEVELS && walk_meets(walk, light, at, depth);
         }
         if (walk.level < LEVELS) {
             sum += cell_light(from, light, walk.node, at);

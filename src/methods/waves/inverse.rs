@@ -6,6 +6,8 @@
 //! light it, and inverts each triangle of rays at its own depth: rays between corners are linear, so that what Newton's method
 //! would find is one division away. Differs from a caustic map: nothing is projected, so any receiver at any depth is lit.
 
+use glam::DVec3;
+
 use super::{shade, with};
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder},
@@ -45,6 +47,7 @@ struct WaterLight {
     radius: f32,
     x: [f32; 3],
     y: [f32; 3],
+    depths: [f32; 2],
 }
 
 /// What its stages share.
@@ -70,7 +73,7 @@ pub fn plan(work: &mut Work<'_>) -> Result<Option<SurfaceProvider>, PlanError> {
 
 impl Inverse {
     fn plan(work: &mut Work<'_>, water: Water) -> Result<Self, PlanError> {
-        let lights = lights(work)?;
+        let lights = lights(work, &water)?;
         let bands: u64 = if work.scene.is_dispersive() { 3 } else { 1 };
         let discs = lights.iter().any(|light| light.radius > 0.0);
         let grid = Grid::of(&water, work.settings.whole(&CELLS), lights.len() as u64);
@@ -123,8 +126,9 @@ impl Inverse {
 }
 
 /// The scene's lights: a sun as one, with its disc; what else has a size, in parts.
-fn lights(work: &Work<'_>) -> Result<Vec<WaterLight>, PlanError> {
+fn lights(work: &Work<'_>, water: &Water) -> Result<Vec<WaterLight>, PlanError> {
     let parts = work.settings.whole(&light::AREA_SAMPLES);
+    let depths = shade::depths(work.scene, water).map(|depth| depth as f32);
     let mut all = Vec::new();
     for light in &work.scene.lights {
         let (kinds, radius) = match light.kind {
@@ -132,7 +136,7 @@ fn lights(work: &Work<'_>) -> Result<Vec<WaterLight>, PlanError> {
             _ => (light.kind.samples(parts), 0.0),
         };
         for kind in kinds {
-            all.push(water_light(work.scene, &light.name, &kind, radius)?);
+            all.push(WaterLight { depths, ..water_light(work.scene, &light.name, &kind, radius)? });
         }
     }
     Ok(all)
@@ -147,7 +151,8 @@ fn water_light(scene: &Scene, name: &str, kind: &LightKind, radius: f64) -> Resu
         }
         _ => Default::default(),
     };
-    Ok(WaterLight { light, radius: radius as f32, x: x.as_vec3().to_array(), y: y.as_vec3().to_array() })
+    let [x, y] = [x, y].map(|axis: DVec3| axis.as_vec3().to_array());
+    Ok(WaterLight { light, radius: radius as f32, x, y, depths: [0.0; 2] })
 }
 
 /// Cells of rays and the levels of bounds above them.

@@ -12,13 +12,7 @@ use crate::{
 pub fn shades(scene: &Scene, water: &Water) -> bool {
     let n = water.frame.normal();
     let (lowest, steepest) = lowest_and_steepest(&scene.objects[water.object].shape);
-    let above = |object: &Object| {
-        let top = object.shape.bounds().map(|[low, high]| {
-            let middle = 0.5 * (low + high);
-            (middle - water.frame.center).dot(n) + 0.5 * (high - low).dot(n.abs())
-        });
-        top.is_some_and(|top| top > lowest)
-    };
+    let above = |object: &Object| depths_of(object, water).is_some_and(|[least, _]| -least > lowest);
     let stands_low = |kind: &LightKind| {
         ways(kind, water).iter().any(|(d, aside)| {
             let elevation = (-d.dot(n)).clamp(-1.0, 1.0).asin() - aside;
@@ -26,6 +20,21 @@ pub fn shades(scene: &Scene, water: &Water) -> bool {
         })
     };
     others(scene, water).any(above) || scene.lights.iter().any(|light| stands_low(&light.kind))
+}
+
+/// Least and greatest depth of all receivers below the water's plane, m.
+pub fn depths(scene: &Scene, water: &Water) -> [f64; 2] {
+    let diffuse = |object: &&Object| !scene.materials[object.material].is_specular();
+    let all = others(scene, water).filter(diffuse).filter_map(|object| depths_of(object, water));
+    all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or_default()
+}
+
+fn depths_of(object: &Object, water: &Water) -> Option<[f64; 2]> {
+    let n = water.frame.normal();
+    let [low, high] = object.shape.bounds()?;
+    let middle = (water.frame.center - 0.5 * (low + high)).dot(n);
+    let half = 0.5 * (high - low).dot(n.abs());
+    Some([middle - half, middle + half])
 }
 
 /// The classes of objects that may stand between the water and a receiver; none where all there is is one flat receiver.
