@@ -3,6 +3,8 @@
 //! rectangle is water, heights and colours are kept in float32, and textures are filtered in the shader, in full precision.
 
 mod grids;
+mod inverse;
+mod shade;
 mod suns;
 
 use grids::{Mesh, Target};
@@ -17,9 +19,9 @@ use crate::{
 static VARIANT: Choice = Choice {
     key: "waves.variant",
     default: "pixel",
-    words: &["listing", "pixel", "shortcut", "texture", "vertex"],
+    words: &["inverse", "listing", "pixel", "shortcut", "texture", "vertex"],
     doc: "where the water's light is found: vertex: on a fine mesh, by finite differences; pixel: at every point seen; texture: in a \
-          target of fixed resolution, with mip maps; shortcut: pixel without refraction; listing: the code as printed",
+          target of fixed resolution, with mip maps; shortcut: pixel without refraction; listing: the code as printed; inverse: ours, all light of each point, in W/m²",
 };
 
 static MESH: Whole = Whole {
@@ -97,6 +99,7 @@ static SETTINGS: &[Setting] = &[
     Setting::Real(&SUN_DISTANCE),
     Setting::Real(&ABSORBED),
     Setting::Choice(&SCREEN_DEPTH),
+    Setting::Whole(&inverse::CELLS),
 ];
 
 static CHAIN: &[Link] = &[
@@ -115,6 +118,7 @@ static CHAIN: &[Link] = &[
             "waves.sun_distance",
             "waves.absorbed",
             "waves.screen_depth",
+            "waves.cells",
             "eye.samples",
         ],
     },
@@ -144,15 +148,18 @@ impl Method for Waves {
         SETTINGS
     }
 
-    fn is_relative(&self, _: &Settings) -> bool {
-        true
+    fn is_relative(&self, settings: &Settings) -> bool {
+        settings.choice(&VARIANT) != "inverse"
     }
 
     fn stages(&self) -> &'static [&'static str] {
-        &["waves/vertices", "waves/texture"]
+        &["waves/vertices", "waves/texture", "waves/rays", "waves/bounds"]
     }
 
     fn warnings(&self, shown: &Outcome<'_>) -> Vec<String> {
+        if shown.settings.choice(&VARIANT) == "inverse" {
+            return Vec::new();
+        }
         suns::warnings(shown.scene)
     }
 
@@ -162,6 +169,9 @@ impl Method for Waves {
 
     fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
         check(work.settings)?;
+        if work.settings.choice(&VARIANT) == "inverse" {
+            return inverse(work);
+        }
         if let Some(reason) = suns::nothing(work.scene) {
             return Ok(Planned::LeftOut(reason));
         }
@@ -180,6 +190,17 @@ impl Method for Waves {
         };
         Ok(Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }))
     }
+}
+
+/// The variant of all light.
+fn inverse(work: &mut Work<'_>) -> Result<Planned, PlanError> {
+    if work.scene.lights.is_empty() {
+        return Ok(Planned::LeftOut("there is no light"));
+    }
+    Ok(match inverse::plan(work)? {
+        Some(surface) => Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }),
+        None => Planned::LeftOut(suns::NO_WATER),
+    })
 }
 
 /// What has no meaning together.
