@@ -98,6 +98,12 @@ pub(super) fn judged_figure(image: &Picture, reference: &Picture, layer: &str) -
     Ok(metrics::relmse(&sides.pair(), e0(image, reference)?))
 }
 
+/// The best scale and the figure with it, of a picture that is right only up to one.
+pub(super) fn fitted_figure(image: &Picture, reference: &Picture, layer: &str) -> Result<Option<Fitted>, CompareError> {
+    let fit = |sides: Sides| Ok(metrics::fitted(&sides.pair(), e0(image, reference)?));
+    image.is_relative(layer).then(|| Sides::of(image, reference, layer).and_then(fit)).transpose()
+}
+
 /// One layer of both, and where they are held against each other.
 pub(super) struct Sides<'p> {
     pub x: &'p Layer,
