@@ -51,8 +51,8 @@ static ANISOTROPY: Whole = Whole {
 static SUN_WIDTH: Real = Real {
     key: "waves.sun_width",
     unit: "degrees",
-    // The water of the paper's Figure 9 leans most rays by less than half of it.
-    default: Some(20.0),
+    // Of the paper's wave, most of what lies within 0.6 of its origin is then lit, and its crests and troughs stand out.
+    default: Some(5.0),
     range: 0.0..=180.0,
     doc: "width of the sun in the sun map, where it has half its brightness; 0: the scene's, or 0.53 where that has none",
 };
