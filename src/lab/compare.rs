@@ -3,7 +3,9 @@
 use super::{CompareError, Picture, compare_warnings::warnings};
 use crate::{
     image::Layer,
-    metrics::{self, Correlation, Measure, PIXELS_PER_DEGREE, Pair, Pictures, RELATIVE_TO_E0, RELATIVE_TO_MEAN, Seen},
+    metrics::{
+        self, Correlation, Fitted, Measure, PIXELS_PER_DEGREE, Pair, Pictures, RELATIVE_TO_E0, RELATIVE_TO_MEAN, Seen,
+    },
 };
 
 /// The least share of the region that has to be judged.
@@ -28,6 +30,8 @@ pub struct Comparison {
     pub constants: Constants,
     /// In the order of [`MEASURES`].
     pub measures: [Measure; 8],
+    /// Of a picture that is right up to a scale.
+    pub fitted: Option<Fitted>,
     /// What differs between the two that should not.
     pub warnings: Vec<String>,
     pub(super) maps: Maps,
@@ -71,6 +75,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
     let vs = sides.variance.map(rgb);
     let pictures =
         Pictures { size: image.size(), image: &xs, reference: &rs, variance: vs.as_deref(), judged: &sides.judged };
+    let fitted = image.is_relative(layer).then(|| metrics::fitted(&sides.pair(), constants.e0));
     let flip = metrics::flip(&pictures, &seen).expect("both pictures and the mask are of one size, checked above");
     Ok(Comparison {
         image: image.file.clone(),
@@ -79,6 +84,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
         pixels: sides.pixels,
         masked: sides.judged.len() - sides.pixels,
         measures: intervals(reference, measures(&sides.pair(), constants.e0, flip.measure)),
+        fitted,
         constants,
         warnings: warnings(image, reference, &sides),
         maps: Maps { size: image.size(), signed: signed(sides.x, sides.r), flip: flip.map, judged: sides.judged },

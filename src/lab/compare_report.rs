@@ -7,7 +7,10 @@ use super::{
     Cell, Report, Table,
     compare::{Comparison, Constants, MEASURES},
 };
-use crate::{metrics::Measure, stats::Number};
+use crate::{
+    metrics::{Fitted, Measure},
+    stats::Number,
+};
 
 /// The result of `nephroid compare`.
 #[derive(Debug, Serialize)]
@@ -28,6 +31,17 @@ struct Row {
     constants: Constants,
     #[serde(serialize_with = "by_name")]
     measures: [Measure; 8],
+    /// Of a picture that is right up to a scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fitted: Option<FittedRow>,
+}
+
+/// The best scale, and the judged figure with it.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct FittedRow {
+    scale: f64,
+    #[serde(serialize_with = "one")]
+    relmse: Measure,
 }
 
 /// A limit that a measure may not exceed.
@@ -50,6 +64,7 @@ impl CompareReport {
             masked: c.masked,
             constants: c.constants,
             measures: c.measures,
+            fitted: c.fitted.map(|Fitted { scale, relmse }| FittedRow { scale, relmse }),
         };
         Self {
             schema: "nephroid.compare/1",
@@ -84,6 +99,10 @@ impl CompareReport {
 fn by_name<S: Serializer>(measures: &[Measure; 8], serializer: S) -> Result<S::Ok, S::Error> {
     let by_name = MEASURES.iter().zip(measures).map(|(name, measure)| (name.to_string(), json(measure)));
     by_name.collect::<Map<_, _>>().serialize(serializer)
+}
+
+fn one<S: Serializer>(measure: &Measure, serializer: S) -> Result<S::Ok, S::Error> {
+    json(measure).serialize(serializer)
 }
 
 pub(super) fn json(measure: &Measure) -> Value {
@@ -133,7 +152,7 @@ impl Report for CompareReport {
         };
         let mut table = self.table(plain);
         table.columns.push("reference");
-        let references = self.results.iter().flat_map(|row| MEASURES.map(|_| Cell::text(&row.reference)));
+        let references = self.results.iter().flat_map(|row| row.named().map(|_| Cell::text(&row.reference)));
         table.rows.iter_mut().zip(references).for_each(|(row, reference)| row.push(reference));
         vec![table]
     }
@@ -141,6 +160,11 @@ impl Report for CompareReport {
     fn notes(&self) -> Vec<String> {
         let mut notes: Vec<String> = self.results.iter().map(note).collect();
         notes.dedup();
+        if self.results.iter().any(|row| row.fitted.is_some()) {
+            notes.push(
+                "a relative picture, right only up to a scale: relmse_fitted is relmse with the best one".to_owned(),
+            );
+        }
         let lost = |row: &Row| row.measures.iter().any(Measure::is_noise);
         if self.results.iter().any(lost) {
             notes.push("lost in noise: below twice what a perfect image would score against this reference".to_owned());
@@ -154,18 +178,29 @@ impl CompareReport {
         let columns = vec!["image", "layer", "pixels", "masked", "measure", "value", "low", "high", "truth noise"];
         let mut rows = Vec::new();
         for row in &self.results {
-            for (name, measure) in MEASURES.iter().zip(&row.measures) {
+            for (name, measure) in row.named() {
                 let of = [
                     Cell::text(&row.image),
                     Cell::text(&row.layer),
                     Cell::Count(row.pixels as u64),
                     Cell::Count(row.masked as u64),
-                    Cell::text(*name),
+                    Cell::text(name),
                 ];
-                rows.push([of.to_vec(), values(measure)].concat());
+                rows.push([of.to_vec(), values(&measure)].concat());
             }
         }
         Table { name: "measures", columns, rows }
+    }
+}
+
+impl Row {
+    /// The measures by name; of a relative picture those of the fit too.
+    fn named(&self) -> impl Iterator<Item = (&'static str, Measure)> {
+        let fit = |FittedRow { scale, relmse }: FittedRow| {
+            let scale = Measure { value: scale, low: None, high: None, truth_noise: None, perfect: 1.0 };
+            [("scale", scale), ("relmse_fitted", relmse)]
+        };
+        MEASURES.into_iter().zip(self.measures).chain(self.fitted.into_iter().flat_map(fit))
     }
 }
 

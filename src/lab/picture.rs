@@ -9,6 +9,8 @@ use crate::{
     names::NoSuch,
 };
 
+/// What a picture says of its slot `surface` where that is irradiance only up to a scale.
+pub(super) const RELATIVE: &str = "relative";
 /// The camera that sees the region and nothing else.
 pub(super) const REGION: &str = "region";
 
@@ -62,6 +64,11 @@ impl Picture {
             }
             _ => Correlation::default(),
         }
+    }
+
+    /// Whether a layer is right only up to a scale.
+    pub(super) fn is_relative(&self, layer: &str) -> bool {
+        ["irradiance.caustic", "caustic"].contains(&layer) && self.about.get("surface").is_some_and(|s| s == RELATIVE)
     }
 
     /// Whether each pixel may be judged: no part of it is masked.

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use sysinfo::{CpuRefreshKind, RefreshKind, System};
 
-use super::devices::DeviceRow;
+use super::{devices::DeviceRow, picture::RELATIVE};
 use crate::{
     gpu::DeviceInfo,
     image,
@@ -33,6 +33,9 @@ pub struct Provenance {
     e0: f64,
     time_s: f64,
     seed: u32,
+    /// Where the slot `surface` is irradiance only up to a scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    surface: Option<&'static str>,
     arguments: Vec<String>,
 }
 
@@ -86,6 +89,7 @@ impl Provenance {
             e0: bare_irradiance(&scene),
             time_s: frame.time,
             seed: frame.seed,
+            surface: job.providers.is_relative(&job.settings).then_some(RELATIVE),
             arguments,
         }
     }

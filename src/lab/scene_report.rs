@@ -163,7 +163,7 @@ impl ObjectRow {
             Shape::Sphere { .. } => ("sphere", None),
             Shape::Quad { .. } => ("quad", None),
             Shape::Canonical { kind, .. } => (kind.name(), None),
-            Shape::Mesh { mesh, .. } => (mesh.sheet.map_or("mesh", |sheet| sheet.kind), Some(mesh)),
+            Shape::Mesh { mesh, .. } => (mesh.sheet.as_ref().map_or("mesh", |sheet| sheet.kind()), Some(mesh)),
         };
         Self {
             name: object.name.clone(),

@@ -97,9 +97,10 @@ pub struct SequenceFrame {
     /// Trees of deformed meshes that were fitted, and those that were built again.
     trees_refitted: u64,
     trees_rebuilt: u64,
-    photons: Map<String, Value>,
-    flux_w: Map<String, Value>,
-    deposited_w: f64,
+    /// Of methods that shoot photons.
+    photons: Option<Map<String, Value>>,
+    flux_w: Option<Map<String, Value>>,
+    deposited_w: Option<f64>,
     warnings: Vec<String>,
 }
 
@@ -112,6 +113,7 @@ impl SequenceFrame {
         (account, energy): (&Account, &Energy),
         job: &Job,
     ) -> Self {
+        let shoot = job.providers.shoot();
         let stages_ms = stages.iter().cloned().zip(times.passes.iter().map(|&ms| ms.into())).collect();
         Self {
             index,
@@ -124,9 +126,9 @@ impl SequenceFrame {
             planned_again: after.replans > before.replans,
             trees_refitted: after.refitted - before.refitted,
             trees_rebuilt: after.rebuilt - before.rebuilt,
-            photons: photons(account),
-            flux_w: flux(account),
-            deposited_w: energy.deposited_w,
+            photons: shoot.then(|| photons(account)),
+            flux_w: shoot.then(|| flux(account)),
+            deposited_w: shoot.then_some(energy.deposited_w),
             warnings: warnings(account, job),
         }
     }

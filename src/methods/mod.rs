@@ -1,22 +1,22 @@
-//! Floor 3: one room per paper. A method adds its passes to a plan; it knows no other method, and no device.
+//! Floor 3: one room per paper. A method adds its passes to a plan; it knows no other method, and no device. One that
+//! shoots photons asks [`light`](crate::passes::light) for them; the frame knows nothing of them.
 //!
 //! To add one: a room here, a folder of shaders under `glsl/`, and a row in [`ALL`].
 
 pub mod maps;
+pub mod waves;
 
 use crate::{
-    gpu::{BufferId, Feature, ImageId, Plan, Resource},
+    gpu::{BufferId, Feature, ImageId},
     names::NoSuch,
     passes::{
-        PlanError,
+        PlanError, Work,
         account::Account,
-        extents::Receiver,
         eye::SurfaceProvider,
-        light::{Bench, Column, Emission, Photons, Tracer},
+        light::{Shot, Shots},
     },
     scene::{Region, Scene},
     settings::{Setting, Settings},
-    view::Extent,
 };
 
 /// What a picture came of, for those who judge it.
@@ -51,34 +51,8 @@ impl Slot {
     }
 }
 
-/// What a method plans with.
-pub struct Job<'a> {
-    /// The plan to add to.
-    pub plan: &'a mut Plan,
-    /// The settings.
-    pub settings: &'a Settings,
-    /// The scene.
-    pub scene: &'a Scene,
-    /// The rectangles to cover: the receiver region or the scene's extent first, then what else may be seen.
-    pub receivers: &'a [Receiver],
-    /// All objects that may be seen lit, whatever their shape.
-    pub seen: &'a [usize],
-    /// Pixels of the picture.
-    pub size: [u32; 2],
-    /// All that the scene holds.
-    pub everything: &'a Extent,
-    /// The emission views, in the order in which they come.
-    pub emissions: &'a [Emission],
-    /// The photon buffer, filled anew for each view: the one of most photons, and in [`Planned::gather`] the view's own.
-    pub photons: &'a Photons,
-    /// What light is traced with, for a method that traces more of it.
-    pub bench: &'a Bench<'a>,
-    /// The tracer that fills the photon buffer.
-    pub tracer: &'a Tracer,
-}
-
 /// What a method offers once it is planned.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Provided {
     /// The slot `surface`.
     pub surface: Option<SurfaceProvider>,
@@ -86,6 +60,26 @@ pub struct Provided {
     pub deposits: Vec<ImageId>,
     /// What a method counts itself, where it traces more than the photon buffer holds.
     pub tally: Option<Tally>,
+    /// Its photons; without any, there is no account of them.
+    pub photons: Shots,
+}
+
+/// A method, planned.
+pub enum Planned {
+    /// Its passes are in the plan.
+    Provided(Provided),
+    /// The scene cannot show what it makes: why. Nothing was planned.
+    LeftOut(&'static str),
+}
+
+impl Planned {
+    /// Of what takes photons.
+    pub fn of<T>(shot: Shot<T>, provide: impl FnOnce(&T) -> Provided) -> Self {
+        match shot {
+            Shot::Taken(taker, photons) => Self::Provided(Provided { photons, ..provide(&taker) }),
+            Shot::Nothing(reason) => Self::LeftOut(reason),
+        }
+    }
 }
 
 /// A method's own count. Its buffer holds eight words: what arrived in the map, W, and what of it is known as points alone
@@ -126,18 +120,6 @@ pub struct Link {
     pub moved_by: &'static [&'static str],
 }
 
-/// A method being planned.
-pub trait Planned {
-    /// Which photons it takes: a file that defines `captured`, and what it reads.
-    fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>);
-
-    /// Takes the photons of one view, which lie in the photon buffer after the pass before.
-    fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String);
-
-    /// What it offers to the eye.
-    fn provide(&self) -> Provided;
-}
-
 /// A method of a paper.
 pub trait Method: Sync {
     /// The name on the command line.
@@ -163,13 +145,15 @@ pub trait Method: Sync {
         Vec::new()
     }
 
-    /// The photon columns it reads, as set.
-    fn columns(&self, settings: &Settings) -> Vec<Column>;
-    /// Whether it wants them all in float16.
-    fn halves(&self, _: &Settings) -> bool {
+    /// Whether it shoots photons, which are then counted and reported.
+    fn shoots(&self) -> bool {
         false
     }
-    /// Its stages, which `plan` lists as left out where no photon can come.
+    /// Whether, as set, its slot `surface` is irradiance only up to a scale, which then is fitted wherever errors are told.
+    fn is_relative(&self, _: &Settings) -> bool {
+        false
+    }
+    /// Its stages, which `plan` lists as left out where the scene cannot show what they make.
     fn stages(&self) -> &'static [&'static str];
     /// What its picture does not show well, and the remedy.
     fn warnings(&self, _: &Outcome<'_>) -> Vec<String> {
@@ -182,12 +166,12 @@ pub trait Method: Sync {
         &[]
     }
 
-    /// Begins planning: images and buffers that all views share.
-    fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError>;
+    /// Adds its passes to the plan.
+    fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError>;
 }
 
 /// Every method, sorted by name. Command line, tests and reports iterate over this.
-pub static ALL: &[&dyn Method] = &[&maps::Maps];
+pub static ALL: &[&dyn Method] = &[&maps::Maps, &waves::Waves];
 
 /// The method of that name.
 ///

@@ -3,6 +3,7 @@
 //! | measure | mean over values (pixels × bands) of | constants |
 //! |---|---|---|
 //! | [`relmse`], the judged one | (x − r)² / (r² + ε) | ε = (0.1 E₀)², E₀ of [`bare_irradiance`] |
+//! | [`fitted()`] | the same, of s x for the s that makes it least | the same |
 //! | [`relmse_standard`] | the same | ε = 10⁻² mean(r)² |
 //! | [`relmse_trimmed`] | the same, without the worst 0.1 % of pixels | ε = 10⁻² mean(r)² |
 //! | [`rmse`] | (x − r)², then its root | |
@@ -31,6 +32,7 @@
 
 mod absolute;
 mod bare;
+mod fitted;
 mod flicker;
 mod flip;
 mod pair;
@@ -38,6 +40,7 @@ mod squared;
 
 pub use absolute::{energy_ratio, mae, mape};
 pub use bare::bare_irradiance;
+pub use fitted::{Fitted, fitted};
 pub use flicker::flicker;
 pub use flip::{Flip, PIXELS_PER_DEGREE, Pictures, Seen, flip, flip_map, magma};
 pub use pair::{Correlation, Pair};

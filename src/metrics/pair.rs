@@ -50,6 +50,12 @@ impl Pair {
         Self { correlation, ..self }
     }
 
+    /// With the image multiplied by a number.
+    pub(super) fn scaled(mut self, scale: f64) -> Self {
+        self.image.iter_mut().for_each(|x| *x *= scale);
+        self
+    }
+
     /// Relative variance of a mean of squared errors beyond that of independent pixels: of a normal error's square it is 2.
     pub(super) fn common_scatter(&self) -> f64 {
         self.correlation.freedom.map_or(0.0, |freedom| 2.0 / freedom)

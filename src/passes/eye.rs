@@ -140,6 +140,15 @@ pub struct SurfaceProvider {
     pub defines: Vec<(&'static str, String)>,
     /// What it reads.
     pub reads: Vec<(&'static str, Resource)>,
+    /// What it may read.
+    pub offers: Vec<(&'static str, BufferId)>,
+}
+
+impl SurfaceProvider {
+    fn give<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let pass = pass.with(self.reads.iter().copied()).provide("provider.glsl", self.file).defines(&self.defines);
+        self.offers.iter().fold(pass, |pass, (name, buffer)| pass.offer(name, *buffer))
+    }
 }
 
 /// The layers that the eye makes.
@@ -281,11 +290,8 @@ impl Eye<'_> {
 
     fn surface(&mut self, provider: &SurfaceProvider) -> (ImageId, ImageId) {
         let (irradiance, radiance) = (self.target("eye/irradiance.caustic"), self.target("eye/caustic"));
-        self.buffers
-            .surfaces(self.buffers.colours(self.plan.pass("eye/surface")))
-            .with(provider.reads.iter().copied())
-            .provide("provider.glsl", provider.file)
-            .defines(&provider.defines)
+        provider
+            .give(self.buffers.surfaces(self.buffers.colours(self.plan.pass("eye/surface"))))
             .read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
             .push(&self.push)
@@ -296,13 +302,14 @@ impl Eye<'_> {
     }
 
     fn trace(&mut self, depth: u32, direct: ImageId, caustic: Option<ImageId>, surface: Option<&SurfaceProvider>) {
-        let reads = surface.map(|s| s.reads.clone()).unwrap_or_default();
         let (buffers, lamps) = (self.buffers, self.lamps);
         let pass = buffers.tracing(buffers.colours(self.plan.pass("eye/trace")));
-        let mut pass = lit(buffers, lamps, pass)
-            .with(reads)
-            .provide("provider.glsl", surface.map_or("eye/no_surface.glsl", |s| s.file))
-            .defines(surface.map_or(&[], |s| &s.defines))
+        let pass = lit(buffers, lamps, pass);
+        let pass = match surface {
+            Some(provider) => provider.give(pass),
+            None => pass.provide("provider.glsl", "eye/no_surface.glsl"),
+        };
+        let mut pass = pass
             .read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
             .define("DEPTH", depth)

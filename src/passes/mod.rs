@@ -8,5 +8,8 @@ pub mod eye;
 pub mod lamps;
 pub mod light;
 pub mod scene;
+pub mod water;
+mod work;
 
 pub use error::PlanError;
+pub use work::Work;

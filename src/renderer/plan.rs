@@ -4,18 +4,18 @@ use std::time::Instant;
 
 use super::{Job, RenderError};
 use crate::{
-    gpu::{BufferId, ImageId, Lifetime, Phase, Plan},
-    methods::{self, Method, Slot},
+    gpu::{BufferId, ImageId, Lifetime, Plan},
+    methods::{self, Method, Provided, Slot},
     passes::{
-        PlanError,
+        PlanError, Work,
         accel::{SceneArrays, Trees},
-        account, extents,
+        extents,
         eye::{self, EyeLayers, EyeScene, FrameData},
         lamps::Lamps,
         light,
         scene::SceneBuffers,
     },
-    view::Extent,
+    settings::Settings,
 };
 
 /// Who fills each slot; nobody, if the frame shows direct light alone.
@@ -32,6 +32,16 @@ impl Providers {
     pub fn of(method: &'static dyn Method) -> Self {
         let fills = |slot| method.slots().contains(&slot).then_some(method);
         Self { surface: fills(Slot::Surface), medium: fills(Slot::Medium) }
+    }
+
+    /// Whether photons are shot, where the scene can show what they make.
+    pub fn shoot(&self) -> bool {
+        self.methods().iter().any(|method| method.shoots())
+    }
+
+    /// Whether the slot `surface` is irradiance only up to a scale.
+    pub fn is_relative(&self, settings: &Settings) -> bool {
+        self.surface.is_some_and(|method| method.is_relative(settings))
     }
 
     /// The distinct methods.
@@ -89,98 +99,54 @@ pub(super) fn plan_with(job: &Job, trees: &mut Trees) -> Result<Planned, RenderE
     let mut plan = Plan { moves: scene.moves(), ..Plan::default() };
     let buffers = SceneBuffers::upload(&mut plan, scene, &arrays);
     let frame = plan.buffer("frame", size_of::<FrameData>() as u64, Lifetime::Frame);
-    let photons = photon_passes(&mut plan, job, (&arrays, &buffers), &everything)?;
+    let mut work = Work {
+        plan: &mut plan,
+        settings,
+        scene,
+        arrays: &arrays,
+        buffers: &buffers,
+        frame,
+        camera,
+        receivers: &extents::receivers(scene, &job.camera),
+        seen: &extents::receiving(scene, &job.camera),
+        size: job.size,
+        samples,
+        everything: &everything,
+    };
+    let provided = method_passes(&job.providers, &mut work)?;
     let from =
         EyeScene { scene, arrays: &arrays, buffers: &buffers, lamps: &lamps, frame, camera, size: job.size, samples };
-    let provided = photons.provided.as_ref().and_then(|p| p.surface.as_ref());
-    let layers = eye::passes(&mut plan, &from, settings, provided);
+    let layers = eye::passes(&mut plan, &from, settings, provided.surface.as_ref());
     Ok(Planned {
         plan,
         frame,
         layers,
-        accounts: photons.accounts,
-        tally: photons.provided.as_ref().and_then(|p| p.tally),
-        deposits: photons.provided.map(|p| p.deposits).unwrap_or_default(),
-        photon_bytes: photons.bytes_each,
+        accounts: provided.photons.accounts,
+        tally: provided.tally,
+        deposits: provided.deposits,
+        photon_bytes: provided.photons.bytes_each,
         plan_ms: start.elapsed().as_secs_f64() * 1e3,
         trees: Trees::default(),
     })
 }
 
-#[derive(Default)]
-struct PhotonPasses {
-    provided: Option<methods::Provided>,
-    accounts: Vec<BufferId>,
-    bytes_each: u64,
-}
-
-/// The part of a frame that photons make; empty, with its reason, where the scene cannot show a caustic.
-fn photon_passes(
-    plan: &mut Plan,
-    job: &Job,
-    (arrays, buffers): (&SceneArrays, &SceneBuffers),
-    everything: &Extent,
-) -> Result<PhotonPasses, PlanError> {
-    let (scene, settings) = (&*job.scene, &job.settings);
-    if let Some(method) = job.providers.medium.filter(|m| !m.slots().contains(&Slot::Medium)) {
+/// The passes of the method that fills the slot `surface`; none, with the reason, where there is no such method or the
+/// scene cannot show what it makes.
+fn method_passes(providers: &Providers, work: &mut Work<'_>) -> Result<Provided, PlanError> {
+    if let Some(method) = providers.medium.filter(|m| !m.slots().contains(&Slot::Medium)) {
         return Err(PlanError::Refused {
             what: format!("--medium {}", method.name()),
             reason: "it does not fill the slot medium".into(),
             remedy: "media are not built yet".into(),
         });
     }
-    let class = light::paths(scene, settings);
-    let receivers = extents::receivers(scene, &job.camera);
-    let seen = extents::receiving(scene, &job.camera);
-    let emissions = light::emissions(scene, settings, &receivers[0].patch)?;
-    let reason = match job.providers.surface {
-        None => Some("no method was asked for"),
-        Some(_) if scene.lights.is_empty() => Some("there is no light"),
-        Some(_) if !scene.has_specular() => Some("nothing in the scene is specular"),
-        Some(_) if emissions.is_empty() => Some("no light with any power reaches a specular object that has a surface"),
-        Some(_) => None,
+    let (stages, reason) = match providers.surface {
+        None => ([].as_slice(), "no method was asked for"),
+        Some(method) => match method.plan(work)? {
+            methods::Planned::Provided(provided) => return Ok(provided),
+            methods::Planned::LeftOut(reason) => (method.stages(), reason),
+        },
     };
-    let (Some(method), None) = (job.providers.surface, reason) else {
-        let stages = job.providers.surface.map(|m| m.stages()).unwrap_or_default();
-        for name in ["light/photons"].iter().chain(stages).chain(&["eye/surface", "light/account"]) {
-            plan.leave_out(name, reason.unwrap_or_default());
-        }
-        return Ok(PhotonPasses::default());
-    };
-    let most = || emissions.iter().map(light::Emission::most).fold(0.0, f64::max);
-    let half = method.halves(settings).then(most);
-    let photons =
-        light::photon_buffer(plan, settings, class, &method.columns(settings), half, &light::sides(&emissions));
-    let views: Vec<_> = emissions.iter().map(|e| e.view.data()).collect();
-    let views = plan.upload("light/views", &views);
-    let bench = light::Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views, base: "light" };
-    let tracer = light::Tracer::plan(plan, &bench)?;
-    let mut work = methods::Job {
-        plan,
-        settings,
-        scene,
-        receivers: &receivers,
-        seen: &seen,
-        size: job.size,
-        everything,
-        emissions: &emissions,
-        photons: &photons[0],
-        bench: &bench,
-        tracer: &tracer,
-    };
-    let mut planned = method.plan(&mut work)?;
-    let mut accounts = Vec::new();
-    for (index, emission) in emissions.iter().enumerate() {
-        let name_of = |base: &str| light::view_name(base, scene, &emissions, index);
-        let own = photons.iter().find(|photons| photons.side == emission.side).unwrap_or(&photons[0]);
-        work.photons = own;
-        let tracing = light::Tracing { scene: buffers, views, tracer: &tracer, class, photons: own, emission, index };
-        tracer.images(work.plan, &bench, Phase::Frame, index);
-        light::photons(work.plan, &name_of("light/photons"), &tracing);
-        planned.gather(&mut work, index, &name_of);
-        tracer.images(work.plan, &bench, Phase::Account, index);
-        let name = name_of("light/account");
-        accounts.push(account::account(work.plan, &name, &tracing, &planned.capture()));
-    }
-    Ok(PhotonPasses { provided: Some(planned.provide()), accounts, bytes_each: photons[0].bytes_each() })
+    stages.iter().chain(&["eye/surface"]).for_each(|name| work.plan.leave_out(name, reason));
+    Ok(Provided::default())
 }

@@ -81,7 +81,7 @@ impl Deformers {
         };
         let (positions, normals) = mesh.positions.iter().zip(&mesh.normals).map(moved).unzip();
         let (triangles, coordinates) = (mesh.triangles.clone(), mesh.coordinates.clone());
-        Mesh { file: mesh.file.clone(), positions, normals, triangles, coordinates, sheet: mesh.sheet }
+        Mesh { file: mesh.file.clone(), positions, normals, triangles, coordinates, sheet: mesh.sheet.clone() }
     }
 
     fn map(&self, p: DVec3, time: f64) -> Map {

@@ -10,6 +10,7 @@ use super::{
     index::IndexFile,
     motion_files::{LightMotionFile, ObjectMotionFile},
     schema,
+    sea_files::SeaFile,
     shape_files::{BoxFile, CylinderFile, DiskFile, ParaboloidFile, SineFile},
     sheet_files::{HeightsFile, WaveFile},
 };
@@ -146,6 +147,8 @@ pub struct ObjectFile {
     pub heights: Option<HeightsFile>,
     /// The wave function of rendered water (GPU Gems, 2004), an open interface.
     pub wave: Option<WaveFile>,
+    /// A sea by an ocean's spectrum, an open interface.
+    pub sea: Option<SeaFile>,
     /// Triangles of a file.
     pub mesh: Option<MeshFile>,
     /// Keys in time.

@@ -1,7 +1,10 @@
 //! Surfaces that are functions of time themselves: waves that travel.
 use std::f64::consts::TAU;
 
-use super::{Canonical, Shape, error::SceneError, file::ObjectFile, locate::Key, object, sheet_files::WaveSheet};
+use super::{
+    Canonical, Shape, error::SceneError, file::ObjectFile, locate::Key, object, sea_files::SeaSheet,
+    sheet_files::WaveSheet,
+};
 
 /// Metres a second. Of what is fast, short and late float64 no longer tells the phase: beyond 10¹⁵ waves it is 0.
 const SPEEDS: std::ops::RangeInclusive<f64> = -1e9..=1e9;
@@ -16,6 +19,8 @@ pub enum Flow {
     },
     /// The wave function of rendered water.
     Wave(WaveSheet),
+    /// A sum of waves.
+    Sea(SeaSheet),
 }
 
 impl Flow {
@@ -28,13 +33,14 @@ impl Flow {
                 Shape::Canonical { kind: Canonical::Sine { wave: *wave, phase }, to_world: *to_world }
             }
             (Self::Wave(sheet), _) => sheet.at(time),
+            (Self::Sea(sheet), _) => sheet.at(time),
             _ => rest.clone(),
         }
     }
 
     /// Whether its triangles change.
     pub fn deforms(&self) -> bool {
-        matches!(self, Self::Wave(_))
+        matches!(self, Self::Wave(_) | Self::Sea(_))
     }
 }
 
@@ -46,6 +52,10 @@ pub fn flow(key: &Key, file: &ObjectFile, unit: f64) -> Result<Option<Flow>, Sce
             key.key("speed").number(sine.speed * unit, SPEEDS, "a speed in metres a second", "0 stands still")?;
         let rate = speed / (sine.wavelength * unit);
         return Ok((rate != 0.0).then_some(Flow::Sine { rate }));
+    }
+    if let Some(sea) = &file.sea {
+        let sheet = object::sea(&key.key("sea"), sea, unit)?;
+        return Ok((sheet.speed != 0.0).then_some(Flow::Sea(sheet)));
     }
     let Some(wave) = &file.wave else { return Ok(None) };
     let sheet = object::wave(&key.key("wave"), wave, unit)?;

@@ -1,7 +1,7 @@
 //! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
 
 /// Tables that say of what kind their parent is; a dotted key may leave them out.
-pub const KINDS: [&str; 19] = [
+pub const KINDS: [&str; 20] = [
     "box",
     "conductor",
     "cylinder",
@@ -17,6 +17,7 @@ pub const KINDS: [&str; 19] = [
     "pinhole",
     "point",
     "quad",
+    "sea",
     "sine",
     "sphere",
     "spot",
@@ -55,6 +56,7 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
             "sine",
             "heights",
             "wave",
+            "sea",
             "mesh",
             "motion",
         ],
@@ -84,6 +86,22 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
             "time",
             "grid",
         ],
+        ["objects", _, "sea"] => &[
+            "center",
+            "u",
+            "v",
+            "wind",
+            "direction",
+            "spread",
+            "count",
+            "shortest",
+            "longest",
+            "factor",
+            "speed",
+            "seed",
+            "time",
+            "grid",
+        ],
         ["objects", _, "mesh"] => &["file", "fit", "center", "rotate"],
         ["objects", _, "motion"] => &["position", "rotate", "scale", "twist", "bend", "wave", "period"],
         ["objects", _, "motion", "twist"] => &["axis", "angle"],
@@ -109,7 +127,7 @@ mod tests {
     use serde::Deserialize;
 
     use super::keys;
-    use crate::scene::{file, imports, motion_files, shape_files, sheet_files};
+    use crate::scene::{file, imports, motion_files, sea_files, shape_files, sheet_files};
 
     /// The keys that the deserialiser names when it meets one that it does not know.
     fn known<T: for<'de> Deserialize<'de>>() -> Vec<String> {
@@ -135,6 +153,7 @@ mod tests {
         assert_eq!(keys(&["objects", "", "sine"]), known::<shape_files::SineFile>());
         assert_eq!(keys(&["objects", "", "heights"]), known::<sheet_files::HeightsFile>());
         assert_eq!(keys(&["objects", "", "wave"]), known::<sheet_files::WaveFile>());
+        assert_eq!(keys(&["objects", "", "sea"]), known::<sea_files::SeaFile>());
         assert_eq!(keys(&["objects", "", "mesh"]), known::<file::MeshFile>());
         assert_eq!(keys(&["objects", "", "motion"]), known::<motion_files::ObjectMotionFile>());
         assert_eq!(keys(&["objects", "", "motion", "twist"]), known::<motion_files::TwistFile>());

@@ -3,7 +3,7 @@
 //! A scene is a TOML file (see `scenes/` for commented ones) or one of the [shipped](Scene::shipped) scenes. Units are
 //! metres, W/m² for directional lights, W/sr for point lights and W/m²/sr for surfaces that shine; the file's `unit` scales every length in it.
 //!
-//! A closed dielectric shape holds its medium inside. A dielectric quad, disk, sine, heights or wave is an open interface:
+//! A closed dielectric shape holds its medium inside. A dielectric quad, disk, sine, heights, wave or sea is an open interface:
 //! its medium lies on the side its normal points away from (water under the air). Other open shapes bound no medium. A
 //! material *is* the identity of its medium: where two shapes of one material touch there is no interface, and nested
 //! dielectrics can be told apart.
@@ -41,6 +41,8 @@ mod overrides;
 mod patch;
 mod picture;
 mod schema;
+mod sea;
+mod sea_files;
 mod shape_files;
 mod sheet;
 mod sheet_files;
@@ -61,9 +63,10 @@ pub use imports::Import;
 pub use light::{Beam, Light, LightKind};
 pub use models::Models;
 pub use picture::{MOST_PIXELS, Picture, Texture};
-pub use sheet::Sheet;
+pub use sea::{Ripple, Sea};
+pub use sheet::{Relief, Sheet};
 pub use slide::Slide;
-pub use wave::Wave;
+pub use wave::{Wave, WaveAt};
 pub use written::Written;
 
 /// A checked scene: every number is finite and in range, every name resolved, every length in metres.

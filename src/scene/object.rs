@@ -8,6 +8,7 @@ use super::{
     file::{Floats, MeshFile, ObjectFile, QuadFile, SphereFile},
     locate::Key,
     picture,
+    sea_files::{self, SeaFile, SeaSheet},
     shape_files::{self, SineFile},
     sheet_files::{self, HeightsFile, WaveFile, WaveSheet},
 };
@@ -34,8 +35,8 @@ pub fn object(
 }
 
 /// Of shapes.
-const KINDS: [&str; 10] =
-    ["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "sine", "heights", "wave", "mesh"];
+const KINDS: [&str; 11] =
+    ["sphere", "quad", "box", "disk", "cylinder", "paraboloid", "sine", "heights", "wave", "sea", "mesh"];
 
 /// Of the one kind that is given.
 fn shape(key: &Key, file: &ObjectFile, unit: f64, assets: &mut Assets) -> Result<Shape, SceneError> {
@@ -49,6 +50,7 @@ fn shape(key: &Key, file: &ObjectFile, unit: f64, assets: &mut Assets) -> Result
         file.sine.as_ref().map(|written| sine(&key.key("sine"), written, unit)),
         file.heights.as_ref().map(|written| heights(&key.key("heights"), written, unit, assets)),
         file.wave.as_ref().map(|written| Ok(wave(&key.key("wave"), written, unit)?.at(0.0))),
+        file.sea.as_ref().map(|written| Ok(sea(&key.key("sea"), written, unit)?.at(0.0))),
         file.mesh.as_ref().map(|written| mesh(&key.key("mesh"), written, unit, assets)),
     ];
     let mut given = kinds.into_iter().flatten();
@@ -82,6 +84,11 @@ fn heights(key: &Key, file: &HeightsFile, unit: f64, assets: &mut Assets) -> Res
 pub fn wave(key: &Key, file: &WaveFile, unit: f64) -> Result<WaveSheet, SceneError> {
     let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
     sheet_files::wave(key, file, sides, unit)
+}
+
+pub fn sea(key: &Key, file: &SeaFile, unit: f64) -> Result<SeaSheet, SceneError> {
+    let sides = rectangle(key, [file.center, file.u, file.v], unit)?;
+    sea_files::sea(key, file, sides, unit)
 }
 
 /// Centre and half edges at right angles.

@@ -8,15 +8,39 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-use super::{Mesh, Shape};
+use super::{Mesh, Ripple, Shape, WaveAt};
 
 /// Of a mesh that is one: vertices row by row, along x first, from the corner of least x and y.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// As scene files name it.
-    pub kind: &'static str,
     /// Along x and y.
     pub cells: [usize; 2],
+    /// The longer half edge as written, which is the mesh's own unit, m.
+    pub unit: f64,
+    /// What its heights are samples of.
+    pub relief: Relief,
+}
+
+/// What a sheet is between its vertices, for who can do better than triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Relief {
+    /// Nothing is known but the vertices.
+    Heights,
+    /// The wave function of rendered water.
+    Wave(WaveAt),
+    /// A sum of waves.
+    Sea(Arc<[Ripple]>),
+}
+
+impl Sheet {
+    /// As scene files name it.
+    pub fn kind(&self) -> &'static str {
+        match self.relief {
+            Relief::Heights => "heights",
+            Relief::Wave(_) => "wave",
+            Relief::Sea(_) => "sea",
+        }
+    }
 }
 
 /// A surface over a rectangle: from a place in [−1, 1]² (in half edges u and v) its height and its slopes along u and v, m and
@@ -24,10 +48,10 @@ pub struct Sheet {
 pub type Surface<'a> = dyn Fn(DVec2) -> (f64, DVec2) + 'a;
 
 /// The sheet over a rectangle. Its own unit is the longer half edge, so that the map to the world scales evenly.
-pub fn sheet(sheet: Sheet, file: String, [center, u, v]: [DVec3; 3], surface: &Surface) -> Shape {
+pub fn sheet(cells: [usize; 2], relief: Relief, file: String, [center, u, v]: [DVec3; 3], surface: &Surface) -> Shape {
     let unit = u.length().max(v.length());
     let half = DVec2::new(u.length(), v.length()) / unit;
-    let [across, along] = sheet.cells;
+    let [across, along] = cells;
     let count = (across + 1) * (along + 1);
     let (mut positions, mut normals) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut coordinates = Vec::with_capacity(count);
@@ -46,6 +70,7 @@ pub fn sheet(sheet: Sheet, file: String, [center, u, v]: [DVec3; 3], surface: &S
         [[a, a + 1, d + 1], [a, d + 1, d]]
     };
     let triangles = (0..across * along).flat_map(cell).collect();
+    let sheet = Sheet { cells, unit, relief };
     let mesh = Mesh { file, positions, normals, triangles, coordinates, sheet: Some(sheet) };
     let axes = DMat3::from_cols(u.normalize(), v.normalize(), u.cross(v).normalize()) * unit;
     Shape::Mesh { mesh: Arc::new(mesh), to_world: DAffine3::from_mat3_translation(axes, center) }
@@ -55,7 +80,7 @@ impl Mesh {
     /// How deep a point lies below the triangles of a sheet, in the mesh's own units; `None` above them, beside them, and of
     /// other meshes.
     pub fn depth_below(&self, p: DVec3) -> Option<f64> {
-        let depth = self.height_at(self.sheet?.cells, p.truncate())? - p.z;
+        let depth = self.height_at(self.sheet.as_ref()?.cells, p.truncate())? - p.z;
         (depth > 0.0).then_some(depth)
     }
 

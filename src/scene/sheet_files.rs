@@ -4,26 +4,26 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    Shape, Wave,
+    Shape, Wave, WaveAt,
     error::SceneError,
     file::Floats,
     locate::Key,
     measure::LARGEST,
-    sheet::{Sheet, sheet},
+    sheet::{Relief, sheet},
 };
 use crate::image::Raster;
 
 /// Cells along a sheet's longer side: more would be eight million triangles.
 const CELLS: std::ops::RangeInclusive<f64> = 1.0..=2048.0;
 /// Cells of a wave where the file does not say: the finest of the paper's waves then has seven.
-const WAVE_CELLS: u32 = 256;
+pub const WAVE_CELLS: u32 = 256;
 const FEWER: &str = "set `grid`, which samples the picture more coarsely";
 /// A factor, a size or a speed of the wave function.
 const CONSTANTS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Of the wave's plane; their product is a phase.
 const COORDINATES: std::ops::RangeInclusive<f64> = 0.0..=1e3;
 /// s
-const TIMES: std::ops::RangeInclusive<f64> = -1e9..=1e9;
+pub const TIMES: std::ops::RangeInclusive<f64> = -1e9..=1e9;
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -98,7 +98,7 @@ pub fn heights(key: &Key, file: &HeightsFile, bytes: &[u8], sides: [DVec3; 3], u
     let [_, u, v] = sides;
     let size = DVec2::new(u.length(), v.length());
     let surface = |at: DVec2| (field.at(at), field.slope(at, cells) / size);
-    Ok(sheet(Sheet { kind: "heights", cells }, file.file.clone(), sides, &surface))
+    Ok(sheet(cells, Relief::Heights, file.file.clone(), sides, &surface))
 }
 
 fn grey(key: &Key, file: &str, bytes: &[u8]) -> Result<Raster, SceneError> {
@@ -147,13 +147,8 @@ impl Field<'_> {
 /// The wave function over a rectangle, at any time.
 #[derive(Clone, Debug)]
 pub struct WaveSheet {
-    wave: Wave,
-    /// s, at the scene's time 0.
-    time: f64,
-    /// Of one unit of the wave, m.
-    length: f64,
-    /// The wave's coordinates at the centre.
-    middle: DVec2,
+    /// At the scene's time 0.
+    first: WaveAt,
     sides: [DVec3; 3],
     cells: [usize; 2],
 }
@@ -161,18 +156,16 @@ pub struct WaveSheet {
 impl WaveSheet {
     /// rad/s
     pub fn speed(&self) -> f64 {
-        self.wave.speed
+        self.first.wave.speed
     }
 
     /// At a time of the scene, s.
     pub fn at(&self, time: f64) -> Shape {
-        let Self { wave, length, middle, sides, .. } = *self;
-        let time = self.time + time;
-        let [_, u, v] = sides;
+        let wave = WaveAt { time: self.first.time + time, ..self.first };
+        let [_, u, v] = self.sides;
         let size = DVec2::new(u.length(), v.length());
-        let place = |at: DVec2| middle + at * size / length;
-        let surface = |at: DVec2| (length * wave.height(place(at), time), wave.gradient(place(at), time));
-        sheet(Sheet { kind: "wave", cells: self.cells }, String::new(), sides, &surface)
+        let surface = |at: DVec2| (wave.height(at * size), wave.gradient(at * size));
+        sheet(self.cells, Relief::Wave(wave), String::new(), self.sides, &surface)
     }
 }
 
@@ -214,11 +207,11 @@ pub fn wave(key: &Key, file: &WaveFile, sides: [DVec3; 3], unit: f64) -> Result<
     let highest = 4.0 * length * wave.vertex_size * wave.factor * reach.length();
     key.key("vertex_size").number(highest, 0.0..=LARGEST, "heights in metres", "make it smaller")?;
     let cells = cells(&key.key("grid"), file.grid.unwrap_or(WAVE_CELLS), sides)?;
-    Ok(WaveSheet { wave, time, length, middle, sides, cells })
+    Ok(WaveSheet { first: WaveAt { wave, time, length, middle }, sides, cells })
 }
 
 /// As many along the longer side, and along the other what makes them square.
-fn cells(key: &Key, grid: u32, [_, u, v]: [DVec3; 3]) -> Result<[usize; 2], SceneError> {
+pub fn cells(key: &Key, grid: u32, [_, u, v]: [DVec3; 3]) -> Result<[usize; 2], SceneError> {
     let grid = key.number(grid.into(), CELLS, "cells along the longer side", "256 is usual")?;
     let longest = u.length().max(v.length());
     Ok([u, v].map(|edge| (grid * edge.length() / longest).round().max(1.0) as usize))

@@ -54,6 +54,35 @@ impl Wave {
     }
 }
 
+/// The wave function at one time, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaveAt {
+    /// Its constants.
+    pub wave: Wave,
+    /// s
+    pub time: f64,
+    /// Of one unit of the wave, m.
+    pub length: f64,
+    /// The wave's coordinates at the centre of its rectangle.
+    pub middle: DVec2,
+}
+
+impl WaveAt {
+    fn place(&self, at: DVec2) -> DVec2 {
+        self.middle + at / self.length
+    }
+
+    /// m, at a place in metres from the centre.
+    pub fn height(&self, at: DVec2) -> f64 {
+        self.length * self.wave.height(self.place(at), self.time)
+    }
+
+    /// Slopes there.
+    pub fn gradient(&self, at: DVec2) -> DVec2 {
+        self.wave.gradient(self.place(at), self.time)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,3 +6,4 @@ mod common;
 mod gpu_floor;
 mod layout;
 mod optics_probes;
+mod water;

@@ -3,13 +3,12 @@
 use crate::{
     gpu::{BufferId, Gpu, Resource},
     lab::picture::REGION,
-    methods::{Job, Method, Planned, Provided, Slot},
+    methods::{Method, Planned, Provided, Slot},
     passes::{
-        PlanError, eye,
-        light::{self, Column},
+        PlanError, Work, eye,
+        light::{self, Column, Job, Taker, Wanted},
     },
     renderer::{self, Dump, Frame, Providers, RenderError, Renderer},
-    settings::Settings,
 };
 
 /// Invocations along one side of the dispatch's work groups.
@@ -44,24 +43,13 @@ impl Method for Landings {
         &[Slot::Surface]
     }
 
-    fn columns(&self, _: &Settings) -> Vec<Column> {
-        vec![Column::Hit, Column::Flux]
-    }
-
     fn stages(&self) -> &'static [&'static str] {
-        &["budget/bin"]
+        &["light/photons", "budget/bin", "light/account"]
     }
 
-    fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
-        let view = eye::view(&job.scene.cameras[REGION], job.size, job.everything);
-        let pixels = pixels(job.size);
-        let unit = light::flux_unit(job.emissions);
-        Ok(Box::new(Binning {
-            size: job.size,
-            view: job.plan.upload("budget/view", &[view.data()]),
-            sums: job.plan.upload_once("budget/sums", &vec![0u32; WORDS * pixels]),
-            unit: job.plan.upload("budget/unit", &[unit.recip() as f32, unit as f32]),
-        }))
+    fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
+        let wanted = Wanted { columns: vec![Column::Hit, Column::Flux], halves: false };
+        Ok(Planned::of(light::shoot(work, &wanted, Binning::begin)?, |_| Provided::default()))
     }
 }
 
@@ -72,7 +60,21 @@ struct Binning {
     unit: BufferId,
 }
 
-impl Planned for Binning {
+impl Binning {
+    fn begin(job: &mut Job<'_>) -> Result<Self, PlanError> {
+        let view = eye::view(&job.scene.cameras[REGION], job.size, job.everything);
+        let pixels = pixels(job.size);
+        let unit = light::flux_unit(job.emissions);
+        Ok(Self {
+            size: job.size,
+            view: job.plan.upload("budget/view", &[view.data()]),
+            sums: job.plan.upload_once("budget/sums", &vec![0u32; WORDS * pixels]),
+            unit: job.plan.upload("budget/unit", &[unit.recip() as f32, unit as f32]),
+        })
+    }
+}
+
+impl Taker for Binning {
     fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
         ("tracers/takes_all.glsl", Vec::new())
     }
@@ -85,10 +87,6 @@ impl Planned for Binning {
         let pass = pass.with(job.photons.fetch(&[Column::Hit, Column::Flux])).read("budget_view", self.view);
         let pass = pass.read("flux_unit", self.unit).write("flux_sums", self.sums).push(&push);
         pass.dispatch("budget/bin.comp", [groups, groups, job.photons.layers()], GROUP * GROUP);
-    }
-
-    fn provide(&self) -> Provided {
-        Provided { surface: None, deposits: Vec::new(), tally: None }
     }
 }
 

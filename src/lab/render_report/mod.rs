@@ -40,9 +40,10 @@ pub struct RenderReport {
     startup_ms: f64,
     /// The frames themselves.
     frames: Frame<Vec<f64>>,
-    photons: Map<String, Value>,
+    /// Of methods that shoot photons.
+    photons: Option<Map<String, Value>>,
     photon_bytes: u64,
-    energy: EnergyRow,
+    energy: Option<EnergyRow>,
     exposure_ev: f64,
     nonfinite_pixels: usize,
     warnings: Vec<String>,
@@ -120,7 +121,7 @@ impl RenderReport {
         provenance: Provenance,
         run: Run,
     ) -> Self {
-        let frames = Frame::of(&measured.frames);
+        let (frames, shoot) = (Frame::of(&measured.frames), job.providers.shoot());
         Self {
             schema: "nephroid.render/1",
             scene: job.scene.name.clone(),
@@ -140,9 +141,9 @@ impl RenderReport {
             frame: frames.medians(),
             startup_ms,
             frames,
-            photons: photons(&measured.account),
+            photons: shoot.then(|| photons(&measured.account)),
             photon_bytes: renderer.photon_bytes(),
-            energy: EnergyRow::new(&measured.energy, &measured.account),
+            energy: shoot.then(|| EnergyRow::new(&measured.energy, &measured.account)),
             exposure_ev: exposure(&job.settings, &job.scene),
             nonfinite_pixels: nonfinite_pixels(&measured.layers),
             warnings: job.scene.warnings.iter().cloned().chain(warnings(&measured.account, job)).collect(),

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use super::RenderReport;
+use super::{EnergyRow, RenderReport};
 use crate::{
     lab::{Cell, Report, Table},
     passes::account::BUCKETS,
@@ -42,22 +42,12 @@ impl Report for RenderReport {
     }
 
     fn notes(&self) -> Vec<String> {
-        let energy = &self.energy;
-        let ratio = energy.ratio.map_or("no photon is valid".to_owned(), |r| {
-            let came = if energy.counted.is_some() { "arrived" } else { "valid" };
-            format!("deposited / {came} {r:.6}")
-        });
-        let mut notes = vec![
-            format!(
-                "light: emitted {:.6} W, valid {:.6} W, deposited {:.6} W, {ratio}",
-                energy.emitted_w, energy.valid_w, energy.deposited_w
-            ),
-            format!(
-                "image.png: exposure {} EV; pixels that are not finite: {}",
-                self.exposure_ev, self.nonfinite_pixels
-            ),
-        ];
-        notes.extend(energy.counted.as_ref().map(|c| {
+        let mut notes: Vec<String> = self.energy.iter().map(light).collect();
+        notes.push(format!(
+            "image.png: exposure {} EV; pixels that are not finite: {}",
+            self.exposure_ev, self.nonfinite_pixels
+        ));
+        notes.extend(self.energy.as_ref().and_then(|energy| energy.counted.as_ref()).map(|c| {
             format!(
                 "cells: {} light samples, {} cells traced finer, {} left by maps.adapt_most; {:.6} W arrive in the map, of it \
                  {:.6} W as points",
@@ -73,6 +63,16 @@ impl Report for RenderReport {
         }
         notes
     }
+}
+
+/// Where the light went, in a line.
+fn light(energy: &EnergyRow) -> String {
+    let ratio = energy.ratio.map_or("no photon is valid".to_owned(), |r| {
+        let came = if energy.counted.is_some() { "arrived" } else { "valid" };
+        format!("deposited / {came} {r:.6}")
+    });
+    let EnergyRow { emitted_w, valid_w, deposited_w, .. } = energy;
+    format!("light: emitted {emitted_w:.6} W, valid {valid_w:.6} W, deposited {deposited_w:.6} W, {ratio}")
 }
 
 impl RenderReport {
@@ -106,13 +106,14 @@ impl RenderReport {
 
     fn photon_table(&self) -> Table {
         let of = |values: &Map<String, Value>, name: &str| values.get(name).cloned().unwrap_or_default();
-        let names = BUCKETS.into_iter().chain(["other_paths"]);
-        let row = |name: &str| {
-            let flux = of(&self.energy.flux_w, name).as_f64().unwrap_or(f64::NAN);
-            vec![Cell::text(name), Cell::count(of(&self.photons, name).as_u64()), Cell::Real(flux, 6)]
+        let shown = self.photons.as_ref().zip(self.energy.as_ref());
+        let shown = shown.filter(|(photons, _)| of(photons, BUCKETS[0]).as_u64() != Some(0));
+        let row = |(photons, energy): (&Map<String, Value>, &EnergyRow), name: &str| {
+            let flux = of(&energy.flux_w, name).as_f64().unwrap_or(f64::NAN);
+            vec![Cell::text(name), Cell::count(of(photons, name).as_u64()), Cell::Real(flux, 6)]
         };
-        let none = of(&self.photons, BUCKETS[0]).as_u64() == Some(0);
-        let rows = if none { Vec::new() } else { names.map(row).collect() };
+        let rows = |shown| BUCKETS.into_iter().chain(["other_paths"]).map(|name| row(shown, name)).collect();
+        let rows = shown.map(rows).unwrap_or_default();
         Table { name: "photons", columns: vec!["photons", "count", "flux W"], rows }
     }
 }

@@ -73,11 +73,16 @@ fn time(summary: &Summary) -> Value {
 /// What it is off by.
 pub(super) fn error(comparison: &Comparison) -> Value {
     let measures = MEASURES.iter().zip(comparison.measures).map(|(name, figure)| (name.to_string(), measure(figure)));
-    json!({
+    let mut error = json!({
         "layer": comparison.layer,
         "reference": comparison.reference,
         "measures": measures.collect::<Map<_, _>>(),
-    })
+    });
+    if let Some(fitted) = comparison.fitted {
+        error["scale"] = Number(fitted.scale).into();
+        error["measures"]["relmse_fitted"] = measure(fitted.relmse);
+    }
+    error
 }
 
 /// A figure with its interval.

@@ -4,10 +4,12 @@ use glam::DVec3;
 
 use crate::{
     gpu::{Format, ImageId, Lifetime, Resource},
-    methods::{Job, Method, Planned, Provided, Slot},
-    passes::{PlanError, light::Column},
+    methods::{Method, Planned, Provided, Slot},
+    passes::{
+        PlanError, Work,
+        light::{self, Column, Job, Taker, Wanted},
+    },
     renderer::{Dump, RenderError, Renderer},
-    settings::Settings,
 };
 
 /// Invocations along one side of the dispatch's work groups.
@@ -53,15 +55,22 @@ impl Method for Keep {
         &[Slot::Surface]
     }
 
-    fn columns(&self, _: &Settings) -> Vec<Column> {
-        vec![Column::Hit, Column::Flux, Column::Exit]
-    }
-
     fn stages(&self) -> &'static [&'static str] {
-        &["tracers/keep"]
+        &["light/photons", "tracers/keep", "light/account"]
     }
 
-    fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
+    fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
+        let wanted = Wanted { columns: KEPT.map(|(column, ..)| column).to_vec(), halves: false };
+        Ok(Planned::of(light::shoot(work, &wanted, Keeping::begin)?, |_| Provided::default()))
+    }
+}
+
+struct Keeping {
+    images: [ImageId; 3],
+}
+
+impl Keeping {
+    fn begin(job: &mut Job<'_>) -> Result<Self, PlanError> {
         let (side, layers) = (job.photons.side, job.emissions.len() as u32);
         if job.emissions.iter().any(|emission| emission.side != side) {
             return Err(PlanError::Refused {
@@ -71,15 +80,11 @@ impl Method for Keep {
             });
         }
         let image = |name| job.plan.image_array(name, [side; 2], layers, Format::Rgba32f, Lifetime::Frame);
-        Ok(Box::new(Keeping { images: KEPT.map(|(_, name, _)| name).map(image) }))
+        Ok(Self { images: KEPT.map(|(_, name, _)| name).map(image) })
     }
 }
 
-struct Keeping {
-    images: [ImageId; 3],
-}
-
-impl Planned for Keeping {
+impl Taker for Keeping {
     fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
         ("tracers/takes_all.glsl", Vec::new())
     }
@@ -89,10 +94,6 @@ impl Planned for Keeping {
         let pass = job.plan.pass(&name_of("tracers/keep")).with(job.photons.fetch(&KEPT.map(|(column, ..)| column)));
         let stored = KEPT.iter().zip(self.images).fold(pass, |pass, ((_, _, name), image)| pass.store(name, image));
         stored.push(&(view as i32)).dispatch("tracers/keep.comp", [groups, groups, 1], GROUP * GROUP);
-    }
-
-    fn provide(&self) -> Provided {
-        Provided { surface: None, deposits: Vec::new(), tally: None }
     }
 }
 

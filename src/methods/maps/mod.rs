@@ -26,13 +26,13 @@ use points::Points;
 use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
 use sums::Fixed;
 
-use super::{Job, Link, Method, Outcome, Planned, Provided, Shown, Slot};
+use super::{Link, Method, Outcome, Planned, Provided, Shown, Slot};
 use crate::{
     gpu::{Blend, BufferId, Draw, Feature, Format, ImageId, Lifetime, PassBuilder, Resource, Topology},
     passes::{
-        PlanError,
+        PlanError, Work,
         eye::SurfaceProvider,
-        light::{Column, Photons},
+        light::{self, Column, Job, Photons, Taker, Wanted},
     },
     settings::{Choice, Real, Setting, Settings, Whole},
 };
@@ -205,48 +205,29 @@ impl Method for Maps {
         Axes::of(settings).pairs()
     }
 
-    fn columns(&self, settings: &Settings) -> Vec<Column> {
-        let axes = Axes::of(settings);
-        if axes.splat == "cells" { cells::COLUMNS.to_vec() } else { Splats::of(axes, settings).columns().to_vec() }
-    }
-
-    fn halves(&self, settings: &Settings) -> bool {
-        copied::halves(settings)
+    fn shoots(&self) -> bool {
+        true
     }
 
     fn stages(&self) -> &'static [&'static str] {
-        &["maps/gather", "maps/resolve"]
+        &["light/photons", "maps/gather", "maps/resolve", "light/account"]
     }
 
     fn chain(&self) -> &'static [Link] {
         CHAIN
     }
 
-    fn plan(&self, job: &mut Job<'_>) -> Result<Box<dyn Planned>, PlanError> {
-        let axes = Axes::checked(job.settings)?;
-        let side = job.settings.whole(&SIDE);
-        let views = views::receiving(job, axes, side, job.settings.whole(&SPLAT_SIZE));
-        let splats = Splats::of(axes, job.settings);
-        let layers = views::layers(&views, splats.levels())?;
-        let views = job.plan.upload("maps/views", &views);
-        let fixed = sums::fixed(job, axes, side, layers);
-        cells::check(axes, &fixed)?;
-        let cells = Cells::plan(job, axes, side, views)?;
-        let mut map = |name: &&str| job.plan.image_array(name, [side, side], layers, Format::Rgba32f, Lifetime::Frame);
-        Ok(Box::new(PlannedMaps {
-            splats,
-            maps: splats.maps().iter().map(&mut map).collect(),
-            views,
-            cells,
-            vertices: Vertices::plan(job),
-            points: Points::plan(job, axes, &fixed)?,
-            large: Large::plan(job, axes, &fixed),
-            fixed,
-            hierarchies: Hierarchy::plan(job, axes),
-            culls: culls(job.settings, axes),
-            drawn: false,
-        }))
+    fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
+        let settings = work.settings;
+        let wanted = Wanted { columns: columns(settings), halves: copied::halves(settings) };
+        Ok(Planned::of(light::shoot(work, &wanted, PlannedMaps::begin)?, PlannedMaps::provide))
     }
+}
+
+/// The photon columns that are read, as set.
+fn columns(settings: &Settings) -> Vec<Column> {
+    let axes = Axes::of(settings);
+    if axes.splat == "cells" { cells::COLUMNS.to_vec() } else { Splats::of(axes, settings).columns().to_vec() }
 }
 
 /// Whether a geometry shader discards what is no photon, as a traversal does by itself.
@@ -275,6 +256,47 @@ struct PlannedMaps {
 }
 
 impl PlannedMaps {
+    /// Images and buffers that all views share.
+    fn begin(job: &mut Job<'_>) -> Result<Self, PlanError> {
+        let axes = Axes::checked(job.settings)?;
+        let side = job.settings.whole(&SIDE);
+        let views = views::receiving(job, axes, side, job.settings.whole(&SPLAT_SIZE));
+        let splats = Splats::of(axes, job.settings);
+        let layers = views::layers(&views, splats.levels())?;
+        let views = job.plan.upload("maps/views", &views);
+        let fixed = sums::fixed(job, axes, side, layers);
+        cells::check(axes, &fixed)?;
+        let cells = Cells::plan(job, axes, side, views)?;
+        let mut map = |name: &&str| job.plan.image_array(name, [side, side], layers, Format::Rgba32f, Lifetime::Frame);
+        Ok(Self {
+            splats,
+            maps: splats.maps().iter().map(&mut map).collect(),
+            views,
+            cells,
+            vertices: Vertices::plan(job),
+            points: Points::plan(job, axes, &fixed)?,
+            large: Large::plan(job, axes, &fixed),
+            fixed,
+            hierarchies: Hierarchy::plan(job, axes),
+            culls: culls(job.settings, axes),
+            drawn: false,
+        })
+    }
+
+    /// What it offers to the eye.
+    fn provide(&self) -> Provided {
+        let maps = ["maps_map", "maps_map_1", "maps_map_2", "maps_map_3"].into_iter().zip(&self.maps);
+        let reads = maps.map(|(name, &map)| (name, Resource::Image(map))).chain([self.views()]).collect();
+        let surface =
+            SurfaceProvider { file: "maps/surface.glsl", defines: self.splats.defines(), reads, offers: Vec::new() };
+        Provided {
+            surface: Some(surface),
+            deposits: self.maps[..1].to_vec(),
+            tally: self.cells.as_ref().map(Cells::counted),
+            ..Provided::default()
+        }
+    }
+
     fn views(&self) -> (&'static str, Resource) {
         ("maps_views", Resource::Buffer(self.views))
     }
@@ -305,7 +327,7 @@ impl PlannedMaps {
     }
 }
 
-impl Planned for PlannedMaps {
+impl Taker for PlannedMaps {
     fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>) {
         ("maps/capture.glsl", vec![self.views()])
     }
@@ -358,17 +380,6 @@ impl Planned for PlannedMaps {
             if view + 1 == job.emissions.len() {
                 fixed.resolve(job, map, self.splats.side, large.is_some());
             }
-        }
-    }
-
-    fn provide(&self) -> Provided {
-        let maps = ["maps_map", "maps_map_1", "maps_map_2", "maps_map_3"].into_iter().zip(&self.maps);
-        let reads = maps.map(|(name, &map)| (name, Resource::Image(map))).chain([self.views()]).collect();
-        let surface = SurfaceProvider { file: "maps/surface.glsl", defines: self.splats.defines(), reads };
-        Provided {
-            surface: Some(surface),
-            deposits: self.maps[..1].to_vec(),
-            tally: self.cells.as_ref().map(Cells::counted),
         }
     }
 }

@@ -10,6 +10,7 @@ mod corners;
 mod emission;
 mod images;
 mod photons;
+mod shoot;
 mod tracer;
 mod unit;
 
@@ -22,6 +23,7 @@ pub use corners::Corners;
 pub use emission::{Emission, emissions, sides, sized, view_name};
 pub use images::Bench;
 pub use photons::{Column, Photons, SamplePush, Tracing, photon_buffer, photons};
+pub use shoot::{Job, Shot, Shots, Taker, Wanted, shoot};
 pub use tracer::{BACK, TOTAL_REFLECTION, TRACER, Tracer};
 pub use unit::flux_unit;
 

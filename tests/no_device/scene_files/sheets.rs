@@ -59,7 +59,7 @@ fn heights_lie_over_their_rectangle() {
     folder.write("h.png", png([2, 2], ColorType::Grayscale, BitDepth::Sixteen, &[0, 0, 255, 255, 128, 0, 0, 0]));
     let scene = folder.load(with(HEIGHTS), &[]).unwrap_or_else(|error| panic!("{error}"));
     let (mesh, to_world) = sheet_of(&scene);
-    assert_eq!(mesh.sheet.map(|s| (s.kind, s.cells)), Some(("heights", [1, 1])));
+    assert_eq!(mesh.sheet.as_ref().map(|s| (s.kind(), s.cells)), Some(("heights", [1, 1])));
     let corners: Vec<_> = mesh.positions.iter().map(|p| to_world.transform_point3(p.as_dvec3())).collect();
     // From the lower left, which is at −u −v, along u: black 0, white 1, and 32768 of 65535.
     let half = 32768.0 / 65535.0;
@@ -69,7 +69,7 @@ fn heights_lie_over_their_rectangle() {
         assert!((corner - glam::dvec3(x, 1.0 - 0.1 + 0.5 * value, z)).length() < 1e-6, "{corner}");
     }
     let finer = folder.load(with(&format!("{HEIGHTS}grid = 6\n")), &[]).unwrap();
-    assert_eq!(sheet_of(&finer).0.sheet.map(|s| s.cells), Some([4, 6]));
+    assert_eq!(sheet_of(&finer).0.sheet.as_ref().map(|s| s.cells), Some([4, 6]));
     assert_ne!(finer.source.hash, scene.source.hash);
     folder.write("h.png", grey([2, 2]));
     let other = folder.load(with(HEIGHTS), &[]).unwrap();

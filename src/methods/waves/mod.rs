@@ -1,0 +1,250 @@
+#![doc = include_str!("README.md")]
+//! Based on: J. Guardado and D. Sánchez-Crespo, *Rendering Water Caustics*, GPU Gems (2004), ch. 2. Differs: any height over a
+//! rectangle is water, heights and colours are kept in float32, and textures are filtered in the shader, in full precision.
+
+mod grids;
+mod suns;
+
+use grids::{Mesh, Target};
+
+use super::{Link, Method, Outcome, Planned, Provided, Shown, Slot};
+use crate::{
+    gpu::{PassBuilder, Resource},
+    passes::{PlanError, Work, eye::SurfaceProvider, water::Water},
+    settings::{Choice, Real, Setting, Settings, Whole},
+};
+
+static VARIANT: Choice = Choice {
+    key: "waves.variant",
+    default: "pixel",
+    words: &["listing", "pixel", "shortcut", "texture", "vertex"],
+    doc: "where the water's light is found: vertex: on a fine mesh, by finite differences; pixel: at every point seen; texture: in a \
+          target of fixed resolution, with mip maps; shortcut: pixel without refraction; listing: the code as printed",
+};
+
+static MESH: Whole = Whole {
+    key: "waves.mesh",
+    unit: "cells",
+    default: 128,
+    range: 1..=4096,
+    doc: "with waves.variant = vertex, cells of the fine mesh along each side of the water",
+};
+
+static SIDE: Whole = Whole {
+    key: "waves.side",
+    unit: "texels",
+    default: 512,
+    range: 1..=8192,
+    doc: "with waves.variant = texture, texels along each side of the target: a power of two",
+};
+
+static ANISOTROPY: Whole = Whole {
+    key: "waves.anisotropy",
+    unit: "probes",
+    default: 16,
+    range: 1..=16,
+    doc: "with waves.variant = texture, how often the target is looked up along a pixel's longer axis, at most",
+};
+
+static SUN_WIDTH: Real = Real {
+    key: "waves.sun_width",
+    unit: "degrees",
+    // The water of the paper's Figure 9 leans most rays by less than half of it.
+    default: Some(20.0),
+    range: 0.0..=180.0,
+    doc: "width of the sun in the sun map, where it has half its brightness; 0: the scene's, or 0.53 where that has none",
+};
+
+static SUN_EDGE: Real = Real {
+    key: "waves.sun_edge",
+    unit: "",
+    default: Some(1.0),
+    range: 0.0..=1.0,
+    doc: "how much of the sun's half width, on both sides of it, is its edge: 0: a sharp disc; 1: bright in the middle alone",
+};
+
+static SUN_DISTANCE: Real = Real {
+    key: "waves.sun_distance",
+    unit: "m",
+    default: Some(0.8),
+    range: 1e-6..=1e6,
+    doc: "with waves.variant = shortcut, depth at which the sun map is waves.sun_width wide; below it the sun is smaller",
+};
+
+static ABSORBED: Real = Real {
+    key: "waves.absorbed",
+    unit: "1/m",
+    default: None,
+    range: 0.0..=0.999,
+    doc: "share of the light that a metre of water takes (the paper: 0.2 to 0.23); else by the scene's absorption",
+};
+
+static SCREEN_DEPTH: Choice = Choice {
+    key: "waves.screen_depth",
+    default: "off",
+    words: &["off", "on"],
+    doc: "with pixel or shortcut, whether slopes are divided by the distance from the eye where that is below 1 m, as in the listing, \
+          which always does",
+};
+
+static SETTINGS: &[Setting] = &[
+    Setting::Choice(&VARIANT),
+    Setting::Whole(&MESH),
+    Setting::Whole(&SIDE),
+    Setting::Whole(&ANISOTROPY),
+    Setting::Real(&SUN_WIDTH),
+    Setting::Real(&SUN_EDGE),
+    Setting::Real(&SUN_DISTANCE),
+    Setting::Real(&ABSORBED),
+    Setting::Choice(&SCREEN_DEPTH),
+];
+
+static CHAIN: &[Link] = &[
+    Link { shown: Shown::AllPaths, step: "", moved_by: &[] },
+    Link { shown: Shown::PathClass, step: "path class", moved_by: &["light.paths"] },
+    Link {
+        shown: Shown::AsAsked,
+        step: "light from straight above alone",
+        moved_by: &[
+            "waves.variant",
+            "waves.mesh",
+            "waves.side",
+            "waves.anisotropy",
+            "waves.sun_width",
+            "waves.sun_edge",
+            "waves.sun_distance",
+            "waves.absorbed",
+            "waves.screen_depth",
+            "eye.samples",
+        ],
+    },
+];
+
+/// Water caustics without light: of every point of a receiver the one ray that goes straight up.
+pub struct Waves;
+
+impl Method for Waves {
+    fn name(&self) -> &'static str {
+        "waves"
+    }
+
+    fn title(&self) -> &'static str {
+        "the ray straight up from the floor, refracted into the air, looked up in a picture of the sun"
+    }
+
+    fn paper(&self) -> &'static str {
+        "J. Guardado and D. Sánchez-Crespo, Rendering Water Caustics, GPU Gems 2004, ch. 2"
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::Surface]
+    }
+
+    fn settings(&self) -> &'static [Setting] {
+        SETTINGS
+    }
+
+    fn is_relative(&self, _: &Settings) -> bool {
+        true
+    }
+
+    fn stages(&self) -> &'static [&'static str] {
+        &["waves/vertices", "waves/texture"]
+    }
+
+    fn warnings(&self, shown: &Outcome<'_>) -> Vec<String> {
+        suns::warnings(shown.scene)
+    }
+
+    fn chain(&self) -> &'static [Link] {
+        CHAIN
+    }
+
+    fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
+        check(work.settings)?;
+        if let Some(reason) = suns::nothing(work.scene) {
+            return Ok(Planned::LeftOut(reason));
+        }
+        let Some(water) = Water::of(work.plan, work.scene) else { return Ok(Planned::LeftOut(suns::NO_WATER)) };
+        let sky = Sky::plan(work, water);
+        let surface = match work.settings.choice(&VARIANT) {
+            "vertex" => Mesh::plan(work, &sky).provider(&sky),
+            "texture" => Target::plan(work, &sky).provider(&sky, work.settings),
+            "shortcut" => sky.provider("waves/shortcut.glsl"),
+            "listing" => sky.provider("waves/listing.glsl"),
+            _ => sky.provider("waves/pixel.glsl"),
+        };
+        let surface = match work.settings.choice(&SCREEN_DEPTH) {
+            "on" => SurfaceProvider { defines: with(surface.defines, "WAVES_SCREEN_DEPTH", 1), ..surface },
+            _ => surface,
+        };
+        Ok(Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }))
+    }
+}
+
+/// What has no meaning together.
+fn check(settings: &Settings) -> Result<(), PlanError> {
+    let variant = settings.choice(&VARIANT);
+    let side = settings.whole(&SIDE);
+    if variant == "texture" && !side.is_power_of_two() {
+        return Err(PlanError::Refused {
+            what: format!("waves.side={side}"),
+            reason: "each level of the target's mip maps has half the texels of the one before".into(),
+            remedy: format!(
+                "use {} or {}",
+                side.next_power_of_two() / 2,
+                side.next_power_of_two().min(*SIDE.range.end())
+            ),
+        });
+    }
+    if settings.choice(&SCREEN_DEPTH) == "on" && ["texture", "vertex"].contains(&variant) {
+        return Err(PlanError::Refused {
+            what: format!("waves.screen_depth=on with waves.variant={variant}"),
+            reason: "where it finds its light, no screen is known".into(),
+            remedy: "use waves.variant=pixel or shortcut, or waves.screen_depth=off".into(),
+        });
+    }
+    Ok(())
+}
+
+fn with(mut defines: Vec<(&'static str, String)>, name: &'static str, value: u32) -> Vec<(&'static str, String)> {
+    defines.push((name, value.to_string()));
+    defines
+}
+
+/// The water and the sun map above it, which every variant looks up.
+struct Sky {
+    water: Water,
+    /// `Waves` of `glsl/waves/sun.glsl`.
+    data: crate::gpu::BufferId,
+    /// Bands are bent apart.
+    apart: bool,
+}
+
+impl Sky {
+    fn plan(work: &mut Work<'_>, water: Water) -> Self {
+        let apart = work.scene.is_dispersive();
+        let data = suns::data(work.scene, &water, work.settings);
+        Self { water, data: work.plan.upload("waves", &[data]), apart }
+    }
+
+    /// For a stage that includes `waves/sun.glsl`.
+    fn give<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let pass = self.water.provide(pass).offer("waves", self.data);
+        if self.apart { pass.define("WAVES_BANDS", 3) } else { pass }
+    }
+
+    fn provider(&self, file: &'static str) -> SurfaceProvider {
+        let (mut defines, mut offers) = self.water.parts();
+        offers.push(("waves", self.data));
+        if self.apart {
+            defines = with(defines, "WAVES_BANDS", 3);
+        }
+        SurfaceProvider { file, defines, reads: Vec::new(), offers }
+    }
+
+    /// The same with an image.
+    fn provider_of(&self, file: &'static str, image: (&'static str, Resource)) -> SurfaceProvider {
+        SurfaceProvider { reads: vec![image], ..self.provider(file) }
+    }
+}
