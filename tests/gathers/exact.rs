@@ -80,7 +80,7 @@ fn a_cluster_has_one_receiver() {
         let set = [&[("light.side", "130"), ("maps.side", "32")], set].concat();
         layers(&picture(&gpu, &job_of(scene.clone(), &set, "main", [32, 32])))
     };
-    let (plain, merged) = (of(&[]), of(&[("maps.merge", "exact"), ("maps.spread", "8")]));
+    let (plain, merged) = (of(&[("maps.splat", "fixed")]), of(&[("maps.merge", "exact"), ("maps.spread", "8")]));
     println!("{plain:?} W, {merged:?} W");
     assert!(plain.len() > 1 && plain.iter().all(|&w| w > 0.0), "both get light: {plain:?}");
     let off = plain.iter().zip(&merged).map(|(a, b)| (b / a - 1.0).abs());
