@@ -5,7 +5,7 @@
 //! one job were found to differ by 0.9 % on lavapipe, which is seen. `timing/tenth`: twenty of a frame with
 //! one that runs a pass of about a tenth of it once more, and how many were called slower.
 
-use std::{cell::RefCell, ops::ControlFlow};
+use std::{cell::RefCell, ops::ControlFlow, time::Duration};
 
 use nephroid::{
     gpu::{Gpu, GpuOptions, Sources},
@@ -94,7 +94,7 @@ fn compare(a: &RefCell<Renderer>, b: &RefCell<Renderer>) -> Result<Vec<(f64, Ver
     let mut found = Vec::new();
     for seed in 0..COMPARISONS {
         let mut both = [variant("plain", a), variant("other", b)];
-        let rounds = Rounds { rounds: ROUNDS, most_warmup: 20, seed, until: None };
+        let rounds = Rounds { rounds: ROUNDS, most_warmup: 20, least_warmup: Duration::ZERO, seed, until: None };
         let timed = rounds.run(&mut both, &mut |_| ControlFlow::Continue(()))?;
         let ratio = timed.span_ratio(0, 1);
         found.push((ratio.interval.value, ratio.verdict));

@@ -1,8 +1,8 @@
 //! An experiment: one frame of a prepared scene, warmed up, timed again and again, then counted and read back.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, time::Instant};
 
-use super::CompareError;
+use super::{CompareError, timing};
 use crate::{
     gpu::{FrameTimes, PassCounters},
     image::{ImageError, Layers},
@@ -100,8 +100,15 @@ impl Experiment {
         watch: &mut dyn FnMut(Step) -> ControlFlow<()>,
     ) -> Result<Measured, LabError> {
         let mut at = |step| if watch(step).is_break() { Err(LabError::Interrupted) } else { Ok(()) };
+        let begun = Instant::now();
         for index in 0..self.warmup {
             at(Step::Warmup(index))?;
+            renderer.frame(&self.frame)?;
+        }
+        // Whoever asks for no warm-up gets none, and one frame has no median to spoil.
+        let least = timing::least_warmup(renderer.gpu().info());
+        while self.warmup > 0 && self.repeat > 1 && begun.elapsed() < least {
+            at(Step::Warmup(self.warmup))?;
             renderer.frame(&self.frame)?;
         }
         let mut frames = Vec::new();

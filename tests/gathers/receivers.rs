@@ -186,7 +186,7 @@ const SAMPLED: f64 = 0.06;
 fn the_room_s_receivers_get_all_that_arrives_one_behind_another() {
     let gpu = gpu();
     let scene = super::common::picture::scene("room", &[]);
-    for (column, side) in [("own", "64"), ("fetch", "64"), ("cells", "16")] {
+    for (column, side) in [("fixed", "64"), ("fetch", "64"), ("cells", "16")] {
         let set = [("maps.gather", column), ("light.side", side), ("light.paths", "all:3"), ("maps.side", "96")];
         let all: Vec<_> = set.to_vec();
         let room = picture(&gpu, &job_of(scene.clone(), &all, "main", [24, 18]));

@@ -119,8 +119,13 @@ pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, wat
     let (mut ready, left_out) = prepare(gpu, published, extent, watch)?;
     let frames = (ready.len() as u32) * extent.rounds;
     let say = format!("timing {} variants, {frames} frames, on {}", ready.len(), gpu.info().label());
-    let rounds =
-        Rounds { rounds: extent.rounds, most_warmup: MOST_WARMUP, seed: SEED, until: Some(late(extent.seconds)) };
+    let rounds = Rounds {
+        rounds: extent.rounds,
+        most_warmup: MOST_WARMUP,
+        least_warmup: timing::least_warmup(gpu.info()),
+        seed: SEED,
+        until: Some(late(extent.seconds)),
+    };
     let timed = time(&mut ready, rounds, &mut |first| watch(if first { &say } else { "" }))?;
     let mut warnings = timed.warnings(f64::from(gpu.info().timestamp_period) * 1e-6);
     warnings.extend(cut_short(&timed, extent));

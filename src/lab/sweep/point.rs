@@ -13,7 +13,7 @@ use crate::{
     lab::{
         self, Auto, LabError, Picture, Provenance,
         render_report::warnings,
-        timing::{Rounds, Variant},
+        timing::{self, Rounds, Variant},
     },
     metrics::Measure,
     passes::light,
@@ -75,7 +75,13 @@ impl Bench<'_> {
         let (quiet, alone) = host.quiet(patience, go_on)?;
         let render = || renderer.frame(&frame).map_err(LabError::from);
         let mut variants = [Variant { name: "frame".to_owned(), stages, frame: Box::new(render) }];
-        let rounds = Rounds { rounds: self.sweep.rounds, most_warmup: MOST_WARMUP, seed: 0, until: None };
+        let rounds = Rounds {
+            rounds: self.sweep.rounds,
+            most_warmup: MOST_WARMUP,
+            least_warmup: timing::least_warmup(self.gpu.info()),
+            seed: 0,
+            until: None,
+        };
         let timed = rounds.run(&mut variants, &mut |_| go_on())?;
         drop((variants, quiet));
 

@@ -11,13 +11,19 @@ mod summary;
 mod tests;
 mod warnings;
 
-use std::{ops::ControlFlow, time::Instant};
+use std::{
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
 
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_pcg::Pcg64Mcg;
 
 use super::LabError;
-use crate::{gpu::FrameTimes, stats};
+use crate::{
+    gpu::{DeviceInfo, FrameTimes},
+    stats,
+};
 use busy::Cores;
 
 pub use summary::{Ratio, Summary, Verdict};
@@ -26,6 +32,12 @@ pub use summary::{Ratio, Summary, Verdict};
 const WINDOW: usize = 3;
 const SETTLED: f64 = 0.05;
 
+/// How long a device must be busy before its times are taken. Idle GPUs lower their clocks, and raise them only after some
+/// tenths of a second: until then frames take several times as long, steadily (an H100: 19.8 ms in place of 3.8).
+pub fn least_warmup(device: &DeviceInfo) -> Duration {
+    if device.is_software() { Duration::ZERO } else { Duration::from_millis(500) }
+}
+
 /// How variants are timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounds {
@@ -33,6 +45,8 @@ pub struct Rounds {
     pub rounds: u32,
     /// The most frames of each variant before that: fewer, if the median settles sooner.
     pub most_warmup: u32,
+    /// The least time that the warm-ups take together, whatever settles: see [`least_warmup`].
+    pub least_warmup: Duration,
     /// Of the order within the rounds, and of the bootstrap.
     pub seed: u64,
     /// When the time is up: from then on no frame begins, but those of the first round. A round that it cuts is left out.
@@ -106,13 +120,15 @@ impl Rounds {
     ) -> Result<Timed, LabError> {
         let mut at = |beat| if watch(beat).is_break() { Err(LabError::Interrupted) } else { Ok(()) };
         let mut series = Vec::new();
+        let (begun, last) = (Instant::now(), variants.len().saturating_sub(1));
         for (index, variant) in variants.iter_mut().enumerate() {
             let mut spans = Vec::new();
             let settled = loop {
-                if stats::is_settled(&spans, WINDOW, SETTLED) {
+                let awake = index < last || begun.elapsed() >= self.least_warmup;
+                if awake && stats::is_settled(&spans, WINDOW, SETTLED) {
                     break true;
                 }
-                if spans.len() >= self.most_warmup as usize || self.is_late() {
+                if awake && spans.len() >= self.most_warmup as usize || self.is_late() {
                     break false;
                 }
                 at(Beat::Warmup { variant: index })?;

@@ -31,7 +31,7 @@ fn time(rounds: u32, variants: usize, seed: u64, ms: impl Fn(usize, usize) -> f6
         Variant { name: format!("v{variant}"), stages: vec!["a".into(), "b".into()], frame: Box::new(render) }
     };
     let mut list: Vec<_> = (0..variants).map(frame_of).collect();
-    let timed = Rounds { rounds, most_warmup: 20, seed, until: None }
+    let timed = Rounds { rounds, most_warmup: 20, least_warmup: Duration::ZERO, seed, until: None }
         .run(&mut list, &mut |_| ControlFlow::Continue(()))
         .unwrap();
     drop(list);
@@ -140,7 +140,7 @@ fn rounds_end_when_the_time_is_up() {
             Variant { name: name.into(), stages: vec![], frame: Box::new(render) as RenderFrame<'_> }
         };
         let mut two = [variant("a"), variant("b")];
-        let rounds = Rounds { rounds: 9, most_warmup: 0, seed: 0, until: Some(until) };
+        let rounds = Rounds { rounds: 9, most_warmup: 0, least_warmup: Duration::ZERO, seed: 0, until: Some(until) };
         let timed = rounds.run(&mut two, &mut |_| ControlFlow::Continue(())).unwrap();
         drop(two);
         assert_eq!(timed.rounds(), whole);
@@ -153,8 +153,29 @@ fn rounds_end_when_the_time_is_up() {
 fn whoever_watches_can_stop_it() {
     let render = || Ok(frame(1.0));
     let mut one = [Variant { name: "a".into(), stages: vec![], frame: Box::new(render) }];
-    let stopped = Rounds { rounds: 3, most_warmup: 3, seed: 0, until: None }.run(&mut one, &mut |beat| {
-        if matches!(beat, Beat::Timed { round: 1, .. }) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
+    let stopped = Rounds { rounds: 3, most_warmup: 3, least_warmup: Duration::ZERO, seed: 0, until: None }.run(
+        &mut one,
+        &mut |beat| {
+            if matches!(beat, Beat::Timed { round: 1, .. }) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        },
+    );
     assert!(matches!(stopped, Err(LabError::Interrupted)));
+}
+
+#[test]
+fn a_device_that_sleeps_is_woken_however_steady_it_is() {
+    let least_warmup = Duration::from_millis(30);
+    let begun = Instant::now();
+    let mut two = ["a", "b"].map(|name| Variant {
+        name: name.into(),
+        stages: vec!["a".into(), "b".into()],
+        frame: Box::new(move || Ok(frame(if begun.elapsed() < least_warmup { 20.0 } else { 4.0 }))),
+    });
+    let rounds = Rounds { rounds: 3, most_warmup: 8, least_warmup, seed: 0, until: None };
+    let timed = rounds.run(&mut two, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert!(timed.series.iter().all(|series| series.span().samples.iter().all(|ms| *ms < 5.0)));
 }
