@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod hard;
+mod inverse;
 mod model;
 
 use common::{
