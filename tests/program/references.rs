@@ -10,6 +10,7 @@ use nephroid::{
     lab::{self, Comparison, MEASURES, Picture},
     methods,
     scene::{PathClass, Scene},
+    settings::Settings,
     truth,
 };
 
@@ -70,7 +71,8 @@ fn every_method_on_every_scene_is_as_right_as_it_was() {
     let mut wrong = Vec::new();
     for (scene, _) in Scene::shipped() {
         let reference = reference(scene);
-        for method in methods::ALL {
+        // What is right only up to a scale is held to its own equations (`tests/waves`).
+        for method in methods::ALL.iter().filter(|method| !method.is_relative(&Settings::default())) {
             let Some((_, _, measured)) = MEASURED.iter().find(|(s, m, _)| *s == scene && *m == method.name()) else {
                 wrong.push(format!("{scene}, {}: no bound; add what was measured", method.name()));
                 continue;
