@@ -59,20 +59,6 @@ vec2 bend(Cell c) {
     return vec2(beside, beside / max(across, LEAST));
 }
 
-// What makes a cell worth tracing finer; `b` are its bounds. Within WIDE texels its light is taken as even: fewer where
-// what is listed may be listed again.
-bool is_coarse(Cell c, vec4 b) {
-    const float TEXELS = 0.5; // below it a bend is not seen
-    const float SHARE = 0.05;
-#if defined(CELLS_LEVELS) && CELLS_LEVELS > 1
-    const float WIDE = 512.0;
-#else
-    const float WIDE = 4096.0;
-#endif
-    vec2 bent = bend(c), size = b.zw - b.xy;
-    return bent.x > TEXELS && bent.y > SHARE || size.x * size.y > WIDE;
-}
-
 // Whether the light of neighbouring rays parts within the cell, at a crease or behind an edge: its triangles would
 // reach over places where none lands.
 bool is_torn(Cell c) {
@@ -96,6 +82,17 @@ vec4 bounds(Cell c) {
 
 bool is_beside_map(vec4 bounds, int side) {
     return !(all(lessThan(bounds.xy, vec2(side))) && all(greaterThanEqual(bounds.zw, vec2(0.0))));
+}
+
+// The first view in whose window light lands that came by a way to a receiver; -1 if none.
+int map_hit(vec3 p, uint way, uint receiver) {
+    if (way == 0u) return -1;
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        if (!map_is_of(map, receiver, push.light)) continue;
+        Corner c = landed_at(p, way, map);
+        if (c.way != 0u && !is_beside_map(vec4(c.at, c.at), push.side)) return map;
+    }
+    return -1;
 }
 
 void put(ivec2 texel, int layer, vec3 flux) {
@@ -218,6 +215,13 @@ vec3 put_point(vec2 at, int map, vec3 flux, uint slot) {
     }
     add_flux(places() + SLOTS + slot % SLOTS, flux);
     return flux;
+}
+
+// What of a flux (W) about the centre of a cell lands in a view's layer: spread, or as a point where it is torn or no sheet.
+vec3 put_cell(Cell c, int map, vec3 flux, uint slot) {
+    if (c.centre.way == 0u) return vec3(0.0);
+    if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, map, flux, slot);
+    return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, map, flux);
 }
 
 #endif

@@ -2,11 +2,12 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// The cells of a level that one sheet of light is too coarse for, each traced as 4 x 4 smaller ones by a work group: first
-// their corners and centres, each by an invocation, then the photons of each. With DEEPER what is still too coarse is listed
-// for the next level; without it what is no sheet, or torn, goes as points.
+// The cells of a level that pay for it, each traced as 4 x 4 smaller ones by a work group: first their corners and centres, each
+// by an invocation, then the photons of each. With DEEPER what is still cut or torn is listed for the next level; without
+// it that goes as points.
 
-#define PUSH_MORE int side; float diameter; // texels
+// texels; W/m^2; texels
+#define PUSH_MORE int side; float diameter; float dim; float blur;
 #include "light/sample.glsl"
 #ifdef LAYERS
 #include "light/layers.glsl"
@@ -14,7 +15,7 @@
 #else
 #include "light/tracer.glsl"
 #endif
-#include "maps/cells.glsl"
+#include "maps/cell_error.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -25,18 +26,19 @@ layout(set = 0, binding = 18, scalar) readonly buffer List { uvec2 data[]; } cel
 #endif
 #include "maps/finer.glsl"
 
+#include "maps/photons.glsl"
+#if CELLS_LEVEL == 0
+layout(set = 0, binding = 14) uniform PHOTON_SAMPLER photons_way;
+layout(set = 0, binding = 15) uniform PHOTON_SAMPLER corners_hit;
+layout(set = 0, binding = 16) uniform PHOTON_SAMPLER corners_way;
+#endif
+
 const int FINER = 4; // smaller cells a side
 const int GRID = 1 << 2 * CELLS_LEVEL; // the level's cells along a side of a view's texel
 const int LEFT = 5; // samples of a cell that is left as it is
 const int CORNERS = FINER + 1;
 const int FIRST_CENTRE = CORNERS * CORNERS;
 const int SAMPLES = FIRST_CENTRE + FINER * FINER;
-
-#ifdef LAYERS
-const int PHOTONS = LAYERS;
-#else
-const int PHOTONS = 1;
-#endif
 
 // A photon that lands on a receiver.
 struct Arrival {
@@ -48,7 +50,6 @@ struct Arrival {
 };
 
 shared Arrival arrivals[SAMPLES][PHOTONS];
-shared vec3 arrived[64]; // W, by the invocations
 
 Arrival arrival_of(Photon p) {
     return Arrival(p.hit, photon_way(p), p.flux, octahedral_pack(p.normal), p.receiver);
@@ -116,13 +117,6 @@ float share_of_arrival(Arrival a, int map) {
     return a.way == 0u ? 0.0 : share_of(map, a.p, octahedral_unpack(a.normal), a.receiver);
 }
 
-// What of a flux (W) about the centre of a cell lands in a view's layer.
-vec3 put_cell(Cell c, int map, vec3 flux, uint slot) {
-    if (c.centre.way == 0u) return vec3(0.0);
-    if (!is_one_sheet(c) || is_torn(c)) return put_point(c.centre.at, map, flux, slot);
-    return is_beside_map(bounds(c), push.side) ? vec3(0.0) : spread_cell(c, map, flux);
-}
-
 // What of a photon's of a cell's centre lands in the map.
 vec3 take(Samples s, int photon, uint slot) {
     Arrival a = arrivals[s.centre][photon];
@@ -135,58 +129,74 @@ vec3 take(Samples s, int photon, uint slot) {
 }
 
 #ifdef DEEPER
-shared bool deeper[FINER * FINER];
-
-// Whether a photon of a cell's centre is too coarse for what is about it, in any view.
-bool is_coarse_arrival(Samples s, Arrival a) {
-    for (int map = 0; map < maps_views.data.length(); map++) {
-        if (!(share_of_arrival(a, map) > 0.0)) continue;
-        Cell c = cell_of(s, a, map);
-        vec4 b = bounds(c);
-        if (!is_beside_map(b, push.side) && (!is_one_sheet(c) || is_coarse(c, b))) return true;
-    }
-    return false;
-}
-
-// Whether a corner's photon lands in the map by a way that none of the centre's went.
-bool is_stray(Samples s, Arrival a) {
-    if (a.way == 0u) return false;
-    for (int photon = 0; photon < PHOTONS; photon++) {
-        if (arrivals[s.centre][photon].way == a.way) return false;
-    }
-    for (int map = 0; map < maps_views.data.length(); map++) {
-        if (!map_is_of(map, a.receiver, push.light)) continue;
-        Corner c = landed_at(a.p, a.way, map);
-        if (c.way != 0u && !is_beside_map(vec4(c.at, c.at), push.side)) return true;
-    }
-    return false;
-}
-
-// The flux (W, all bands) of the brightest photon for which a cell is worth tracing finer; none, if it is not.
-float coarse_flux(Samples s) {
+// Flux (W, all bands) by a way: the most of what was traced here.
+float flux_by(uint way) {
     float most = 0.0;
-    for (int photon = 0; photon < PHOTONS; photon++) {
-        Arrival a = arrivals[s.centre][photon];
-        if (is_coarse_arrival(s, a)) most = max(most, a.flux.r + a.flux.g + a.flux.b);
-        for (int k = 0; k < 4; k++) {
-            Arrival corner = arrivals[s.corner[k]][photon];
-            if (is_stray(s, corner)) most = max(most, corner.flux.r + corner.flux.g + corner.flux.b);
+    for (int sample_at = 0; sample_at < SAMPLES; sample_at++) {
+        for (int photon = 0; photon < PHOTONS; photon++) {
+            Arrival a = arrivals[sample_at][photon];
+            if (a.way == way) most = max(most, a.flux.r + a.flux.g + a.flux.b);
         }
     }
     return most;
 }
+
+// What a photon of a cell's centre is wrong by in all views, if it is cut or torn. What bends alone is left: a cell of a
+// quarter of the side has a 64th of the error.
+float arrival_error(Samples s, Arrival a) {
+    float error = 0.0;
+    for (int map = 0; map < maps_views.data.length(); map++) {
+        float flux = share_of_arrival(a, map) * (a.flux.r + a.flux.g + a.flux.b);
+        if (!(flux > 0.0)) continue;
+        Cell c = cell_of(s, a, map);
+        vec4 b = bounds(c);
+        if (is_beside_map(b, push.side)) continue;
+        if (!is_one_sheet(c)) error += cut_error(flux, dim_flux(map, a.p));
+        else if (is_torn(c)) error += torn_error(b, flux, dim_flux(map, a.p));
+    }
+    return error;
+}
+
+// What lands in the map at a corner by a way that no photon of the centre went.
+float stray_error(Samples s, Arrival a) {
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        if (arrivals[s.centre][photon].way == a.way) return 0.0;
+    }
+    int map = map_hit(a.p, a.way, a.receiver);
+    return map < 0 ? 0.0 : cut_error(flux_by(a.way), dim_flux(map, a.p));
+}
+
+uint octave_of_cell(Samples s) {
+    float error = 0.0, stray = 0.0;
+    for (int photon = 0; photon < PHOTONS; photon++) {
+        error += arrival_error(s, arrivals[s.centre][photon]);
+        for (int k = 0; k < 4; k++) stray = max(stray, stray_error(s, arrivals[s.corner[k]][photon]));
+    }
+    return octave_of(error + stray);
+}
+
+// Lists a smaller cell if it pays.
+bool goes_deeper(ivec2 at, Samples s) {
+    uint octave = octave_of_cell(s), row = row_of(push.view, uint(CELLS_LEVEL + 1));
+    if (octave < cells_rows.data[row_of(push.view, 0u) + DEEPER_FROM]) return false;
+    atomicAdd(cells_rows.data[row + WEIGHTS + octave], 1u);
+    list_cell(row, at, octave);
+    return true;
+}
+
+shared bool deeper[FINER * FINER];
 #endif
 
-// Books what invocations brought to the map.
-void add_up(int lane, vec3 got, uint slot) {
-    arrived[lane] = got;
-    barrier();
-    if (lane == 0) {
-        for (int k = 1; k < 64; k++) got += arrived[k]; // in one order, or it would not repeat
-        book(slot, got);
+#if CELLS_LEVEL == 0
+// Takes a corner or the centre of a cell of the view's own grid, whose flux is not asked for.
+void recall(int number, ivec2 texel, bool centre) {
+    for (int k = 0; k < PHOTONS; k++) {
+        vec4 hit = centre ? hit_at(texel, k) : texelFetch(corners_hit, PHOTON_PLACE(texel, k), 0);
+        vec4 way = centre ? texelFetch(photons_way, PHOTON_PLACE(texel, k), 0) : texelFetch(corners_way, PHOTON_PLACE(texel, k), 0);
+        arrivals[number][k] = Arrival(hit.xyz, uint(way.r), vec3(0.0), 0.0, uint(max(hit.w, 1.0)) - 1u);
     }
-    barrier();
 }
+#endif
 
 // Traces what the invocation has of a cell, `whole` where it is left as it is. One call: tracers are large.
 void trace_own(ivec2 at, int lane, bool whole) {
@@ -194,7 +204,15 @@ void trace_own(ivec2 at, int lane, bool whole) {
     if (lane >= (whole ? LEFT : SAMPLES)) return;
     bool is_centre = whole ? lane == 4 : centre >= 0;
     ivec2 step = is_centre ? ivec2(centre % FINER, centre / FINER) : ivec2(lane % CORNERS, lane / CORNERS);
+#if CELLS_LEVEL == 0
+    bool middle = step == ivec2(FINER / 2);
+    if (!is_centre && (middle || all(equal(step % FINER, ivec2(0))))) {
+        recall(lane, middle ? at : at + step / FINER, middle);
+        return;
+    }
+#else
     if (whole) step = is_centre ? ivec2(0) : step_to(lane);
+#endif
     trace_sample(lane, (whole ? 1 : FINER) * at + step, is_centre, whole ? GRID : FINER * GRID);
 }
 
@@ -203,27 +221,29 @@ void refine(ivec2 at, int lane, bool whole, uint slot) {
     barrier();
     int cells = whole ? 1 : FINER * FINER;
 #ifdef DEEPER
-    if (lane < cells) {
-        float flux = whole ? 0.0 : coarse_flux(cell_samples(lane, false));
-        deeper[lane] = flux > 0.0;
-        if (flux > 0.0) list_cell(push.view, uint(CELLS_LEVEL + 1), FINER * at + ivec2(lane % FINER, lane / FINER), flux);
-    }
-    barrier();
+    if (lane < cells) deeper[lane] = !whole && goes_deeper(FINER * at + ivec2(lane % FINER, lane / FINER), cell_samples(lane, false));
+#ifdef LAYERS
+    barrier(); // else an invocation asks only for what it has itself decided
 #endif
-    vec3 got = vec3(0.0);
+#endif
     for (int k = lane; k < cells * PHOTONS; k += 64) {
         int number = k % cells;
 #ifdef DEEPER
         if (deeper[number]) continue;
 #endif
-        got += take(cell_samples(number, whole), k / cells, slot);
+        book(slot + uint(k), take(cell_samples(number, whole), k / cells, slot + uint(k)));
     }
-    add_up(lane, got, slot);
+    barrier();
 }
 
 void main() {
     int lane = int(gl_LocalInvocationIndex);
-    uint row = row_of(push.view, uint(CELLS_LEVEL)), cells = cells_rows.data[row + 3u], least = least_octave(row);
+    uint row = row_of(push.view, uint(CELLS_LEVEL)), cells = cells_rows.data[row + LISTED];
+#if CELLS_LEVEL == 0
+    uint least = 0u; // of more cells than a list takes none is in it
+#else
+    uint least = least_octave(row, 0u);
+#endif
     for (uint cell = gl_WorkGroupID.x; cell < cells; cell += gl_NumWorkGroups.x) {
         uvec2 listed = cells_list.data[cell];
         ivec2 at = ivec2(listed.x & 0xffffffu, listed.y);

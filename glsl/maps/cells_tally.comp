@@ -37,20 +37,26 @@ void main() {
     }
     if (lane == 6u) {
         for (uint view = 0u; view < push.views; view++) cells_counts.data[view] = 0u;
-        uint traced = 0u, left = 0u;
+        uint traced = 0u, left = 0u, rays = 0u;
 #ifdef CELLS_LEVELS
         for (uint row = 0u; row < ROW * push.views * uint(CELLS_LEVELS); row += ROW) {
-            uint least = least_octave(row);
+            bool first = row / ROW % uint(CELLS_LEVELS) == 0u;
+            uint from = first ? cells_rows.data[row + PAYS] : 0u, least = least_octave(row, from);
+            uint finer = 0u, coarse = 0u;
             for (uint octave = 0u; octave < OCTAVES; octave++) {
-                if (octave >= least) traced += cells_rows.data[row + 4u + octave];
-                else left += cells_rows.data[row + 4u + octave];
-                cells_rows.data[row + 4u + octave] = 0u;
+                if (octave >= least) finer += cells_rows.data[row + WEIGHTS + octave];
+                else if (octave >= from) coarse += cells_rows.data[row + WEIGHTS + octave];
+                cells_rows.data[row + WEIGHTS + octave] = 0u;
             }
             cells_rows.data[row] = 0u;
-            cells_rows.data[row + 3u] = 0u;
+            cells_rows.data[row + LISTED] = 0u;
+            traced += finer;
+            left += coarse;
+            rays += first ? uint(RAYS_FINER) * finer : uint(RAYS_DEEPER) * finer + RAYS_LEFT * coarse;
         }
 #endif
         cells_tally.data[6] = traced;
         cells_tally.data[7] = left;
+        cells_tally.data[8] = rays;
     }
 }

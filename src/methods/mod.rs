@@ -82,16 +82,15 @@ impl Planned {
     }
 }
 
-/// A method's own count. Its buffer holds eight words: what arrived in the map, W, and what of it is known as points alone
-/// (float32, three bands each); then how many cells were traced finer, and how many were to be, but were too many.
+/// A method's own count. Its buffer holds nine words: what arrived in the map, W, and what of it is known as points alone
+/// (float32, three bands each); then how many cells were traced finer, how many were to be, but were too many, and the light
+/// samples that this took.
 #[derive(Clone, Copy, Debug)]
 pub struct Tally {
     /// The buffer.
     pub buffer: BufferId,
-    /// Light samples traced in every frame.
+    /// Light samples traced besides in every frame.
     pub samples: u64,
-    /// Light samples of a cell that is traced finer, and of one that is left.
-    pub each: [u64; 2],
 }
 
 /// A picture in the chain of a method's error budget; neighbours differ in one thing.
@@ -141,7 +140,7 @@ pub trait Method: Sync {
     }
 
     /// Settings that another one decides, and their values then.
-    fn decided(&self, _: &Settings) -> Vec<(&'static str, String)> {
+    fn decided(&self, _: &Settings, _: &Scene) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 

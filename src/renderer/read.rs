@@ -120,8 +120,8 @@ impl Renderer {
         let Some(tally) = self.planned.tally else { return Ok(None) };
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.program.read_buffer(tally.buffer)?);
         let mean = |bands: &[u32]| bands.iter().map(|&w| f64::from(f32::from_bits(w))).sum::<f64>() / 3.0;
-        let [refined, left] = [6, 7].map(|word: usize| u64::from(words[word]));
-        let samples = tally.samples + tally.each[0] * refined + tally.each[1] * left;
+        let [refined, left, finer] = [6, 7, 8].map(|word: usize| u64::from(words[word]));
+        let samples = tally.samples + finer;
         Ok(Some(Counted { arrived_w: mean(&words[..3]), points_w: mean(&words[3..6]), samples, refined, left }))
     }
 

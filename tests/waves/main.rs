@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod cross;
 mod hard;
 mod inverse;
 mod model;

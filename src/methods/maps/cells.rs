@@ -8,7 +8,7 @@
 
 use super::{
     Axes, Job, SPLAT_SIZE,
-    finer::{Finer, SAMPLES},
+    finer::{Finer, Judge},
     sums::Fixed,
 };
 use crate::{
@@ -16,7 +16,7 @@ use crate::{
     methods::Tally,
     passes::{
         PlanError,
-        light::{Column, Corners},
+        light::{Column, Corners, Photons},
     },
 };
 
@@ -30,12 +30,14 @@ const LARGE_MOST: u64 = 1 << 18;
 /// Bytes of one (`Large` of `glsl/maps/cells.glsl`).
 const LARGE_BYTES: u64 = 52;
 /// Words of the tally.
-const TALLY_BYTES: u64 = 8 * 4;
+const TALLY_BYTES: u64 = 9 * 4;
 /// Work groups that share the parts: enough for the widest device, and few enough to cost next to nothing where none is
 /// listed.
 const GROUPS: u32 = 4096;
 /// Photons a sample that a work group's shared memory holds for 41 samples, of the 16 KiB that every device has.
-pub const LAYERS_MOST: u32 = 10;
+const LAYERS_MOST: u32 = 10;
+/// Bands of light.
+const BANDS: f32 = 3.0;
 /// Invocations along one side of the other work groups.
 const GROUP: u32 = 8;
 
@@ -61,6 +63,8 @@ pub struct Cells {
 struct CellsPush {
     map: LargePush,
     size: [i32; 2],
+    emitted: f32,
+    judge: Judge,
 }
 
 /// Push constants of `glsl/maps/cells_large.comp`.
@@ -131,7 +135,7 @@ impl Cells {
             views,
             side,
             diameter,
-            tally: Tally { buffer, samples, each: SAMPLES },
+            tally: Tally { buffer, samples },
         }))
     }
 
@@ -141,19 +145,27 @@ impl Cells {
         let emission = &job.emissions[view];
         let (side, diameter) = (self.side as i32, self.diameter);
         let map = LargePush { side, diameter, light: emission.lamp, view: view as u32 };
-        let push = CellsPush { map, size: emission.held().map(|n| n as i32) };
-        let groups = job.photons.side.div_ceil(GROUP);
-        let pass = job.photons.define(self.give(fixed, job.plan.pass(&name_of("maps/cells"))));
-        let pass =
-            pass.with(job.photons.fetch(COLUMNS)).with(self.corners(emission.side)).read("maps_views", self.views);
-        let pass = self.finer.iter().fold(pass, |pass, finer| finer.begin(pass));
-        pass.push(&push).dispatch("maps/cells.comp", [groups, groups, 1], GROUP * GROUP);
+        let judge = Judge::of(job, emission, self.side, diameter);
+        let emitted = BANDS * emission.most() as f32;
+        let push = CellsPush { map, size: emission.held().map(|n| n as i32), emitted, judge };
+        let groups = [job.photons.side.div_ceil(GROUP), job.photons.side.div_ceil(GROUP), 1];
         if let Some(finer) = &self.finer {
+            let pass = job.photons.define(finer.weigh(job.plan.pass(&name_of("maps/cells.weigh"))));
+            let pass = pass.with(self.photons(job.photons, COLUMNS, emission.side)).read("maps_views", self.views);
+            pass.push(&push).dispatch("maps/cells_weigh.comp", groups, GROUP * GROUP);
+            finer.pay(job.plan.pass(&name_of("maps/cells.pay")), view);
+        }
+        let pass = job.photons.define(self.give(fixed, job.plan.pass(&name_of("maps/cells"))));
+        let pass = pass.with(self.photons(job.photons, COLUMNS, emission.side)).read("maps_views", self.views);
+        let pass = self.finer.iter().fold(pass, |pass, finer| finer.begin(pass));
+        pass.push(&push).dispatch("maps/cells.comp", groups, GROUP * GROUP);
+        if let Some(finer) = &self.finer {
+            let known = self.photons(job.photons, &[Column::Hit, Column::Way], emission.side);
             finer.refine(
                 job,
                 view,
-                (side, diameter),
-                &|pass| self.give(fixed, pass).read("maps_views", self.views),
+                (side, diameter, judge),
+                (&known, &|pass| self.give(fixed, pass).read("maps_views", self.views)),
                 name_of,
             );
         }
@@ -166,10 +178,12 @@ impl Cells {
         fixed.give(pass).write("cells_counts", self.counts).write("cells_large", self.large)
     }
 
-    fn corners(&self, side: u32) -> impl Iterator<Item = (&'static str, Resource)> {
+    /// Columns of the photons of a view's centres, and all that is known of its corners.
+    fn photons(&self, centres: &Photons, columns: &[Column], side: u32) -> Vec<(&'static str, Resource)> {
         let photons = self.corners.photons(side);
         let column = |name, column| Some((name, Resource::Image(photons.column(column)?)));
-        [column("corners_hit", Column::Hit), column("corners_way", Column::Way)].into_iter().flatten()
+        let corners = [column("corners_hit", Column::Hit), column("corners_way", Column::Way)];
+        centres.fetch(columns).into_iter().chain(corners.into_iter().flatten()).collect()
     }
 
     /// Adds the pass that reads what all views' cells brought, after the last of them.

@@ -1,13 +1,15 @@
-//! Adaptive emission: cells that need more light samples get them, level by level, 16 smaller cells for each.
+//! Adaptive emission: cells that pay for more light samples get them, level by level, 16 smaller cells for each.
 //!
-//! The view's own grid is the coarse pass. It tells which cells are cut by a silhouette or a crease, bend, or are spread
-//! wide (`glsl/maps/cells.comp`); each level's smaller cells are asked the same again. What brings no light to the map is left as it is. Lists are of fixed size: a level with more cells than
-//! `maps.adapt_most` leaves those of the least flux, octave by octave, and they are counted.
+//! The view's own grid is the coarse pass. What each of its cells is wrong by is estimated (`glsl/maps/cell_error.glsl`) and
+//! counted by octaves; those are traced finer without which uniform emission would take fewer rays to the error that is left
+//! (`glsl/maps/cells_pay.comp`), and of the smaller ones those that are cut or torn and pay in their turn. What brings no light to
+//! the map is left as it is. Lists are of fixed size: a level with more cells than `maps.adapt_most` leaves those that are wrong by
+//! least, octave by octave, and they are counted.
 
 use super::Job;
 use crate::{
-    gpu::{BufferId, Lifetime, PassBuilder, Row},
-    passes::light::{SamplePush, TRACER, Tracing},
+    gpu::{BufferId, Lifetime, PassBuilder, Resource, Row},
+    passes::light::{Emission, SamplePush, TRACER, Tracing},
     settings::{Settings, Whole},
 };
 
@@ -16,8 +18,8 @@ pub static ADAPT: Whole = Whole {
     unit: "levels",
     default: 1,
     range: 0..=4,
-    doc: "with maps.splat = cells, how often a cell that its five rays do not describe is traced as 4 x 4 smaller ones: its own \
-          light is then so much finer, and no other's (adaptive emission); 0: light.side everywhere. With light.tracer = bvh",
+    doc: "with maps.splat = cells, how often a cell is traced as 4 x 4 smaller ones where that lowers the error by more than as many \
+          rays elsewhere would (adaptive emission); 0: light.side everywhere. With light.tracer = bvh",
 };
 
 pub static MOST: Whole = Whole {
@@ -25,16 +27,18 @@ pub static MOST: Whole = Whole {
     unit: "cells",
     default: 1 << 18,
     range: 1..=1 << 20,
-    doc: "cells of a view that are traced finer in each level, at most; of more, those of the least light are left, and counted",
+    doc: "cells of a view that are traced finer in each level, at most; of more, those that are wrong by least are left, and counted",
 };
 
-/// Light samples of a cell that is traced finer, and of one that is left (`SAMPLES` and `LEFT` of
-/// `glsl/maps/cells_refine.comp`).
-pub const SAMPLES: [u64; 2] = [25 + 16, 5];
 /// Smaller cells of one (`FINER` squared there).
 const SMALLER: u64 = 16;
-/// Words of a level's row (`ROW` of `glsl/maps/finer.glsl`): that of its dispatch, and octaves of flux.
-const ROW: u32 = 36;
+/// Words of a level's row (`ROW` of `glsl/maps/finer.glsl`), and which of them has the view's rays (`RAYS` there).
+const ROW: u32 = 40;
+const RAYS: usize = 4;
+/// Of a light's irradiance, what is told from none just so: as the judged error measure has it.
+const DIM: f64 = 0.1;
+/// Bands of light.
+const BANDS: f64 = 3.0;
 /// Bytes of a cell in a list.
 const CELL_BYTES: u64 = 8;
 /// Invocations of a work group.
@@ -56,6 +60,29 @@ struct RefinePush {
     sample: SamplePush,
     side: i32,
     diameter: f32,
+    judge: Judge,
+}
+
+/// What an error is held against (`dim` and `blur` of `glsl/maps/cell_error.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Judge {
+    /// W/m², all bands.
+    dim: f32,
+    /// What the picture blurs, texels: a pixel of one that shows the whole map, or a splat where that is more.
+    blur: f32,
+}
+
+impl Judge {
+    /// For a view of emission, and a map of so many texels a side with splats of a diameter.
+    pub fn of(job: &Job<'_>, emission: &Emission, side: u32, diameter: f32) -> Self {
+        const NEAREST: f64 = 1e-3; // m: a light in a receiver's middle
+        let middle = job.receivers.first().map(|receiver| receiver.patch.center);
+        let apart = emission.position.zip(middle).map_or(1.0, |(a, b)| a.distance(b).max(NEAREST));
+        let dim = (DIM * BANDS * emission.brightest() / (apart * apart)) as f32;
+        let pixels = job.size[0].min(job.size[1]).max(1);
+        Self { dim, blur: (side as f32 / pixels as f32).max(diameter) }
+    }
 }
 
 /// Levels in force.
@@ -85,15 +112,34 @@ impl Finer {
             lists.push(job.plan.buffer(&name, CELL_BYTES * cells, Lifetime::Frame));
             cells = SMALLER * cells.min(most.into());
         }
-        let empty: Vec<u32> = (0..ROW).map(|word| u32::from(word == 1 || word == 2)).collect();
-        let rows = job.plan.upload_once("maps/cells.rows", &empty.repeat(job.emissions.len() * levels as usize));
+        let row = |emission: &Emission| {
+            let [x, y] = emission.held();
+            let mut row = [0; ROW as usize];
+            (row[1], row[2], row[RAYS]) = (1, 1, x * y + (x + 1) * (y + 1));
+            row.repeat(levels as usize)
+        };
+        let rows = job.plan.upload_once("maps/cells.rows", &job.emissions.iter().flat_map(row).collect::<Vec<_>>());
         Some(Self { lists, rows, most })
     }
 
     /// Gives a pass the list of a level to fill.
     fn fill<'p>(&self, pass: PassBuilder<'p>, level: usize) -> PassBuilder<'p> {
-        let pass = pass.write("cells_next", self.lists[level]).write("cells_rows", self.rows);
-        pass.define("CELLS_LEVELS", self.lists.len())
+        self.rows(pass.write("cells_next", self.lists[level]))
+    }
+
+    /// Gives a pass the rows.
+    fn rows<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        pass.write("cells_rows", self.rows).define("CELLS_LEVELS", self.lists.len())
+    }
+
+    /// Gives the pass that weighs the cells of the view's own grid what it counts them in.
+    pub fn weigh<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        self.rows(pass)
+    }
+
+    /// Makes a pass the one that says which of them pay.
+    pub fn pay(&self, pass: PassBuilder<'_>, view: usize) {
+        self.count(pass).push(&(view as u32)).dispatch("maps/cells_pay.comp", [1, 1, 1], 1);
     }
 
     /// Gives the pass over the view's own grid the first list.
@@ -101,13 +147,14 @@ impl Finer {
         self.fill(pass.define("REFINED", 1), 0)
     }
 
-    /// Adds a pass a level; `give` gives it what all passes over cells take.
+    /// Adds a pass a level. The first has the photons of the view's own grid, `known`; `give` gives each what all passes over cells
+    /// take.
     pub fn refine(
         &self,
         job: &mut Job<'_>,
         view: usize,
-        (side, diameter): (i32, f32),
-        give: &dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>,
+        (side, diameter, judge): (i32, f32, Judge),
+        (known, give): (&[(&'static str, Resource)], &dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>),
         name_of: &dyn Fn(&str) -> String,
     ) {
         let tracing = Tracing {
@@ -119,14 +166,15 @@ impl Finer {
             emission: &job.emissions[view],
             index: view,
         };
-        let push = RefinePush { sample: tracing.push(), side, diameter };
+        let push = RefinePush { sample: tracing.push(), side, diameter, judge };
         for (level, &list) in self.lists.iter().enumerate() {
             let name = name_of(&format!("maps/cells.refine{}", numbered(level as u32)));
             let pass = tracing.give(give(job.plan.pass(&name))).read("cells_list", list).push(&push);
+            let pass = if level == 0 { pass.with(known.iter().copied()) } else { pass };
             let pass = pass.define("CELLS_LEVEL", level).define("CELLS_MOST", self.most);
             let pass = match self.lists.get(level + 1) {
                 Some(_) => self.fill(pass.define("DEEPER", 1), level + 1),
-                None => pass.write("cells_rows", self.rows).define("CELLS_LEVELS", self.lists.len()),
+                None => self.rows(pass),
             };
             let row = (view * self.lists.len() + level) as u32 * (ROW / Row::WORDS as u32);
             pass.dispatch_counted("maps/cells_refine.comp", Row { rows: self.rows, row }, GROUP);
@@ -135,7 +183,7 @@ impl Finer {
 
     /// Gives the pass that counts the lists.
     pub fn count<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        pass.write("cells_rows", self.rows).define("CELLS_LEVELS", self.lists.len()).define("CELLS_MOST", self.most)
+        self.rows(pass).define("CELLS_MOST", self.most)
     }
 }
 

@@ -48,6 +48,14 @@ static ANISOTROPY: Whole = Whole {
     doc: "with waves.variant = texture, how often the target is looked up along a pixel's longer axis, at most",
 };
 
+static FILTER: Choice = Choice {
+    key: "waves.filter",
+    default: "linear",
+    words: &["cubic", "linear"],
+    doc: "with waves.variant = texture, what lies between texels: linear, as hardware has it, which shows a cross about bright spots; \
+          cubic: ours, of 16 texels, with a fiftieth of its power",
+};
+
 static SUN_WIDTH: Real = Real {
     key: "waves.sun_width",
     unit: "degrees",
@@ -94,6 +102,7 @@ static SETTINGS: &[Setting] = &[
     Setting::Whole(&MESH),
     Setting::Whole(&SIDE),
     Setting::Whole(&ANISOTROPY),
+    Setting::Choice(&FILTER),
     Setting::Real(&SUN_WIDTH),
     Setting::Real(&SUN_EDGE),
     Setting::Real(&SUN_DISTANCE),
@@ -113,6 +122,7 @@ static CHAIN: &[Link] = &[
             "waves.mesh",
             "waves.side",
             "waves.anisotropy",
+            "waves.filter",
             "waves.sun_width",
             "waves.sun_edge",
             "waves.sun_distance",

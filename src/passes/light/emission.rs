@@ -48,6 +48,11 @@ impl Emission {
         self.brightest * window.x * window.y
     }
 
+    /// W/m² on a plane that faces the light, or W/sr: of its brightest band, in its brightest direction.
+    pub fn brightest(&self) -> f64 {
+        self.brightest
+    }
+
     /// Photons along both sides that lie in the view: a tile may reach beyond it.
     pub fn held(&self) -> [u32; 2] {
         self.first.map(|first| self.side.min(self.whole - first))

@@ -1,0 +1,51 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+// Which cells of a view pay for being traced finer: those without which uniform emission would take fewer rays to the error that
+// is left.
+
+layout(local_size_x = 1) in;
+
+layout(push_constant, scalar) uniform Push {
+    uint view;
+} push;
+
+#include "maps/finer.glsl"
+
+// Of uniform emission, how the sum of weights falls with rays. By theory 0.75, since relMSE falls with the power 1.5; with
+// less more cells are traced finer. The least for which no scene takes more rays than uniform emission.
+const float POWER = 0.6;
+const float LEFT_OVER = 0.125; // of a cell's weight: a quarter of the side leaves a 64th of the error
+
+float weight_of(uint octave) {
+    return exp2(float(octave) + 0.5 + FIRST_OCTAVE);
+}
+
+// As many rays as uniform emission takes to a sum of weights, but for a factor.
+float cost(float rays, float weight) {
+    return rays * pow(max(weight, 1e-30), 1.0 / POWER);
+}
+
+void main() {
+    uint row = row_of(push.view, 0u), pays = OCTAVES;
+    float rays = float(cells_rows.data[row + RAYS]), weight = 0.0;
+    for (uint octave = 1u; octave < OCTAVES; octave++) {
+        weight += float(cells_rows.data[row + WEIGHTS + octave]) * weight_of(octave);
+    }
+    vec2 best = vec2(rays, weight);
+    for (uint octave = OCTAVES - 1u; octave > 0u; octave--) {
+        float cells = float(cells_rows.data[row + WEIGHTS + octave]);
+        rays += RAYS_FINER * cells;
+        weight -= cells * weight_of(octave) * (1.0 - LEFT_OVER);
+        if (cells > 0.0 && cost(rays, weight) < cost(best.x, best.y)) {
+            best = vec2(rays, weight);
+            pays = octave;
+        }
+    }
+    // A smaller cell pays where its weight a ray is what one ray more would bring all over.
+    float deeper = POWER * RAYS_DEEPER * best.y / best.x;
+    cells_rows.data[row + PAYS] = pays;
+    cells_rows.data[row + LEAST] = least_octave(row, pays);
+    cells_rows.data[row + DEEPER_FROM] = octave_of(deeper * deeper) + 1u;
+}
