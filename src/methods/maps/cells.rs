@@ -127,16 +127,7 @@ impl Cells {
         let samples = job.emissions.iter().map(|emission| each(emission.held())).sum();
         let buffer = job.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);
         let diameter = job.settings.whole(&SPLAT_SIZE) as f32;
-        Ok(Some(Self {
-            corners,
-            counts,
-            large,
-            finer,
-            views,
-            side,
-            diameter,
-            tally: Tally { buffer, samples },
-        }))
+        Ok(Some(Self { corners, counts, large, finer, views, side, diameter, tally: Tally { buffer, samples } }))
     }
 
     /// Adds the cells of one view to the sums.
