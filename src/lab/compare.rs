@@ -76,6 +76,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
     let pictures =
         Pictures { size: image.size(), image: &xs, reference: &rs, variance: vs.as_deref(), judged: &sides.judged };
     let fitted = image.is_relative(layer).then(|| metrics::fitted(&sides.pair(), constants.e0));
+    let fitted = fitted.map(|fit| Fitted { relmse: interval(reference, fit.relmse), ..fit });
     let flip = metrics::flip(&pictures, &seen).expect("both pictures and the mask are of one size, checked above");
     Ok(Comparison {
         image: image.file.clone(),
@@ -83,7 +84,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
         layer: layer.to_owned(),
         pixels: sides.pixels,
         masked: sides.judged.len() - sides.pixels,
-        measures: intervals(reference, measures(&sides.pair(), constants.e0, flip.measure)),
+        measures: measures(&sides.pair(), constants.e0, flip.measure).map(|measure| interval(reference, measure)),
         fitted,
         constants,
         warnings: warnings(image, reference, &sides),
@@ -95,6 +96,12 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
 pub(super) fn judged_figure(image: &Picture, reference: &Picture, layer: &str) -> Result<Measure, CompareError> {
     let sides = Sides::of(image, reference, layer)?;
     Ok(metrics::relmse(&sides.pair(), e0(image, reference)?))
+}
+
+/// The best scale and the figure with it, of a picture that is right only up to one.
+pub(super) fn fitted_figure(image: &Picture, reference: &Picture, layer: &str) -> Result<Option<Fitted>, CompareError> {
+    let fit = |sides: Sides| Ok(metrics::fitted(&sides.pair(), e0(image, reference)?));
+    image.is_relative(layer).then(|| Sides::of(image, reference, layer).and_then(fit)).transpose()
 }
 
 /// One layer of both, and where they are held against each other.
@@ -179,9 +186,9 @@ fn measures(pair: &Pair, e0: f64, flip: Measure) -> [Measure; 8] {
 }
 
 /// Cells of light have no noise: what stands for their variance says how far they may be off, and bounds no interval.
-fn intervals(reference: &Picture, measures: [Measure; 8]) -> [Measure; 8] {
+fn interval(reference: &Picture, measure: Measure) -> Measure {
     let cells = reference.about.get("estimator").is_some_and(|estimator| estimator == "cells");
-    if cells { measures.map(Measure::without_interval) } else { measures }
+    if cells { measure.without_interval() } else { measure }
 }
 
 /// The pixels judged, in float64.

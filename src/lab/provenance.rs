@@ -142,7 +142,7 @@ pub(super) fn in_force(job: &Job) -> Map<String, Value> {
         Setting::Real(s) => settings.real(s).into(),
         Setting::Choice(_) | Setting::Word(_) => settings.text(setting).into(),
     };
-    let decided = job.providers.methods().into_iter().flat_map(|m| m.decided(settings));
+    let decided = job.providers.methods().into_iter().flat_map(|m| m.decided(settings, scene));
     let decided = decided.map(|(key, value)| (key.to_owned(), value.into()));
     renderer::all_settings().into_iter().map(|s| (s.key().to_owned(), value(s))).chain(decided).collect()
 }

@@ -140,7 +140,7 @@ pub trait Method: Sync {
     }
 
     /// Settings that another one decides, and their values then.
-    fn decided(&self, _: &Settings) -> Vec<(&'static str, String)> {
+    fn decided(&self, _: &Settings, _: &Scene) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 

@@ -291,7 +291,7 @@ impl Eye<'_> {
     fn surface(&mut self, provider: &SurfaceProvider) -> (ImageId, ImageId) {
         let (irradiance, radiance) = (self.target("eye/irradiance.caustic"), self.target("eye/caustic"));
         provider
-            .give(self.buffers.surfaces(self.buffers.colours(self.plan.pass("eye/surface"))))
+            .give(self.buffers.tracing(self.buffers.colours(self.plan.pass("eye/surface"))))
             .read("frame", self.frame)
             .fetch("eye_gbuffer", self.gbuffer)
             .push(&self.push)

@@ -104,6 +104,9 @@ pub fn waters(scene: &Scene) -> impl Iterator<Item = usize> {
     (0..scene.objects.len()).filter(move |&k| clear(k) && frame(&scene.objects[k].shape).is_some())
 }
 
+/// What a pass is told by the preprocessor, and the buffers that it may read.
+pub type Parts = (Vec<(&'static str, String)>, Vec<(&'static str, BufferId)>);
+
 impl Water {
     /// The first water of the scene, each kind as its function says; heights of a picture have none, and are their triangles.
     pub fn of(plan: &mut Plan, scene: &Scene) -> Option<Self> {
@@ -164,7 +167,7 @@ impl Water {
     }
 
     /// What [`Self::provide`] defines and offers, for a slot's provider.
-    pub fn parts(&self) -> (Vec<(&'static str, String)>, Vec<(&'static str, BufferId)>) {
+    pub fn parts(&self) -> Parts {
         let shape = self.shape.map(|shape| ("water_shape", shape));
         (self.defines.clone(), [("water", self.data)].into_iter().chain(shape).collect())
     }

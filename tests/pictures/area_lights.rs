@@ -123,7 +123,13 @@ const EVEN: f64 = 0.015;
 #[test]
 fn a_sun_over_flat_water_is_even() {
     let scene = under("flat-water", &sun(10.0));
-    let set = [("light.side", "1024"), ("maps.side", "128"), ("light.area_samples", "16"), ("eye.samples", "2")];
+    let set = [
+        ("maps.splat", "fixed"),
+        ("light.side", "1024"),
+        ("maps.side", "128"),
+        ("light.area_samples", "16"),
+        ("eye.samples", "2"),
+    ];
     let found = of(&gpu(), &scene, &set);
     all_ended(&found.account, scene.paths);
     let sum = found.account.flux_w[1..].iter().sum::<f64>() + found.account.other_paths_w;

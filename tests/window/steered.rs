@@ -44,6 +44,8 @@ fn keys_change_what_is_shown_and_the_title_says_it() {
         hand.press('-'.into());
         hand.expect("at +0.0 EV");
         hand.press('m'.into());
+        hand.expect("method waves | caustic");
+        hand.press('m'.into());
         hand.expect("method none | caustic");
         hand.press('m'.into());
         hand.expect("method maps");

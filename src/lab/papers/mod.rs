@@ -17,13 +17,24 @@ const TEXT: &str = "text";
 /// Figures of pictures, which have no number in `tables.toml`: paper, figure, what is reported, what its pictures are of.
 const PICTURES: [(&str, &str, &str, &[&str]); 8] = [
     ("maps", "figure7", "gather", &["constant", "thin lens", "interpolated", "varying"]),
-    ("waves", "figure9", "picture", &["per vertex", "per pixel", "texture"]),
+    ("waves", "figure9", "picture", FIGURE_9),
     ("lines", "figure7", "picture", &["lines", "Krüger et al."]),
     ("lines", "figure8", "picture", &["g = 0.7", "g = 0", "g = -0.7"]),
     ("lines", "figure10", "picture", &["buffer", "filter"]),
     ("lines", "figure11", "picture", &["integration steps"]),
     ("beams", "figure4", "picture", &["static grids", "refinement steps"]),
     ("beams", "figure8", "picture", &["direct", "medium", "volume", "surface", "composed"]),
+];
+
+/// Its mesh and its target have no size in the paper.
+const FIGURE_9: &[&str] = &[
+    "per vertex, 32",
+    "per vertex, 128",
+    "per vertex, 512",
+    "per pixel",
+    "texture, 128",
+    "texture, 512",
+    "texture, 2048",
 ];
 
 /// What a row is of: an N, or a scene or variant by name.

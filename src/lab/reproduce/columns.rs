@@ -28,6 +28,8 @@ pub enum Part {
     Eye,
     /// The whole, in frames a second.
     Rate,
+    /// All that makes light below water, ms.
+    Water,
 }
 
 impl Part {
@@ -35,6 +37,9 @@ impl Part {
     pub fn holds(self, stage: &str) -> bool {
         let part = match stage {
             _ if self == Self::Rate => self,
+            s if self == Self::Water => {
+                return ["waves/", "eye/surface"].iter().any(|of| s.starts_with(of));
+            }
             s if s.starts_with("light/") => Self::Photons,
             s if s.starts_with("maps/copy") => Self::Copy,
             s if s.starts_with("maps/") => Self::Gather,
@@ -52,7 +57,7 @@ impl Part {
     }
 }
 
-/// A way to gather: the settings beside [`SETUP`].
+/// A way to gather, or to light water: the settings beside [`SETUP`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variant {
     /// What it renders.
@@ -65,16 +70,21 @@ pub struct Variant {
     pub splat: Option<&'static str>,
     /// `maps.cull`.
     pub cull: &'static str,
+    /// `waves.variant` in the place of all these.
+    pub waves: Option<&'static str>,
 }
 
 pub const COPY_2006: Variant =
-    Variant { subject: Subject::Still, gather: "copy", copy: "16-32", splat: None, cull: "clip" };
+    Variant { subject: Subject::Still, gather: "copy", copy: "16-32", splat: None, cull: "clip", waves: None };
 const COPY_32: Variant = Variant { copy: "32-32", ..COPY_2006 };
 const COPY_16: Variant = Variant { copy: "16-16", ..COPY_2006 };
 
 impl Variant {
     /// In words.
     pub fn name(self) -> String {
+        if let Some(waves) = self.waves {
+            return waves.to_owned();
+        }
         let name = match (self.gather, self.splat) {
             (_, Some(splat)) => splat.to_owned(),
             ("copy", _) => format!("copy {}", self.copy),
@@ -85,6 +95,27 @@ impl Variant {
         format!("{model}{name}{cull}")
     }
 
+    /// The name with N, and of what it is the number; none where it depends on none.
+    pub fn at(self, side: u32) -> String {
+        match self.waves {
+            None => format!("{}, {side}² photons", self.name()),
+            Some("pixel") => "pixel".to_owned(),
+            Some("vertex") => format!("vertex, {side}² cells"),
+            Some(other) => format!("{other}, {side}² texels"),
+        }
+    }
+
+    /// The method's name.
+    pub fn method(self) -> &'static str {
+        if self.waves.is_some() { "waves" } else { "maps" }
+    }
+
+    /// How many times as long as at the N before a frame takes, at most: photons and vertices grow as N², and of water what
+    /// the eye does is the most.
+    pub fn growth(self) -> f64 {
+        if self.waves.is_some() { 1.0 } else { 4.0 }
+    }
+
     /// The same of another subject.
     pub fn with(self, subject: Subject) -> Self {
         Self { subject, ..self }
@@ -92,6 +123,10 @@ impl Variant {
 
     /// Everything that it sets, for N² photons.
     pub fn set(self, side: u32) -> Vec<(String, String)> {
+        if let Some(waves) = self.waves {
+            let sizes = ["waves.mesh", "waves.side"].map(|key| (key.to_owned(), side.to_string()));
+            return [("waves.variant".to_owned(), waves.to_owned())].into_iter().chain(sizes).collect();
+        }
         let own = [("maps.gather", self.gather), ("maps.copy", self.copy), ("maps.cull", self.cull)];
         let splat = self.splat.into_iter().flat_map(|splat| [("maps.traverse", "fetch"), ("maps.splat", splat)]);
         let pairs = SETUP.into_iter().chain(own).chain(splat).map(|(key, value)| (key.to_owned(), value.to_owned()));
@@ -109,11 +144,15 @@ impl Variant {
 /// N of the pictures of Fig. 7: the paper does not say; few enough for the noise that it shows.
 const PICTURED: u32 = 512;
 
+/// N of what has none: any would do, and this one is always run.
+const LEAST: u32 = 32;
+
 /// What a figure is of a run; else what is missing.
 pub fn asked(published: &Published, figure: &Figure) -> Result<Asked, String> {
     match published.id.as_str() {
         "maps.table5" => of_models(figure),
         "maps.text" => text::asked(&figure.column),
+        "waves.figure9" => Ok(Asked::Time(of_water(figure))),
         _ => {
             let (variant, part) = of_column(published, figure)?;
             let side = figure.row.number().unwrap_or(PICTURED);
@@ -133,6 +172,19 @@ fn of_models(figure: &Figure) -> Result<Asked, String> {
         }
         Err(_) => Ok(Asked::Triangles(subject)),
     }
+}
+
+/// A row of the water paper's Fig. 9: what is lit, then N, where it has one.
+fn of_water(figure: &Figure) -> Place {
+    let row = figure.row.text();
+    let (what, side) = row.split_once(", ").unwrap_or((&row, ""));
+    let waves = match what {
+        "per vertex" => "vertex",
+        "texture" => "texture",
+        _ => "pixel",
+    };
+    let variant = Variant { waves: Some(waves), ..COPY_32 }.with(Subject::Water);
+    Place { variant, side: side.parse().unwrap_or(LEAST), part: Part::Water }
 }
 
 /// A preset in the set-up of the papers.

@@ -19,13 +19,13 @@ use crate::{
     image::Layers,
     lab::{
         Auto, LabError, Picture, Provenance,
-        compare::judged_figure,
+        compare::{fitted_figure, judged_figure},
         exposure,
         papers::Published,
         timing::{self, Beat, Rounds, Timed},
     },
     methods,
-    metrics::Measure,
+    metrics::{Fitted, Measure},
     renderer::{self, Frame, Job, Providers, RenderError, Renderer},
     scene::Scene,
     store::Store,
@@ -35,8 +35,6 @@ use crate::{
 const LAYER: &str = "irradiance.caustic";
 /// Frames before timing begins, at most.
 const MOST_WARMUP: u32 = 8;
-/// Photons and vertices grow as N².
-const GROWTH: f64 = 4.0;
 /// Of the device's memory that all renderers together may take.
 const MEMORY: f64 = 0.5;
 const SEED: u64 = 1;
@@ -51,8 +49,8 @@ pub struct Measured {
     pub variant: Variant,
     pub side: u32,
     pub stages: Vec<String>,
-    /// Photons that arrived, of those emitted, and their share of the flux.
-    pub valid: [f64; 2],
+    /// Photons that arrived, of those emitted, and their share of the flux; of a method that shoots any.
+    pub valid: Option<[f64; 2]>,
     /// Photons emitted.
     pub emitted: u64,
     /// Points that each stage of gathering draws, where it draws points: those of every step of a traversal among them.
@@ -63,6 +61,8 @@ pub struct Measured {
     pub kept: Option<f64>,
     /// Of the picture; none before it was judged.
     pub relmse: Option<Measure>,
+    /// The same with the scale that fits best, of a picture that is right only up to one.
+    pub fitted: Option<Fitted>,
     pub layers: Layers,
     /// For its PNG, EV.
     pub exposure_ev: f64,
@@ -140,6 +140,7 @@ pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, wat
     })?;
     for ((measured, picture), truth) in all.iter_mut().zip(&pictures).zip(&references) {
         measured.relmse = Some(judged_figure(picture, truth, LAYER)?);
+        measured.fitted = fitted_figure(picture, truth, LAYER)?;
     }
     let reference = references.first().map(|truth| truth.file.clone()).unwrap_or_default();
     Ok(Run { all, timed, left_out, reference, warnings })
@@ -169,7 +170,7 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
     let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let emitted = account.emitted();
     let photons = share(account.counts[VALID] as f64, emitted as f64);
-    let valid = [photons, share(account.valid_w(), account.emitted_w())];
+    let valid = job.providers.shoot().then(|| [photons, share(account.valid_w(), account.emitted_w())]);
     let exposure_ev = exposure(&job.settings, &job.scene);
     let picture = Picture { file: variant.name(), layers: layers.clone(), about: provenance.attributes() };
     Ok((
@@ -184,6 +185,7 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
             triangles: job.scene.triangles(),
             kept,
             relmse: None,
+            fitted: None,
             layers,
             exposure_ev,
             provenance,
@@ -223,7 +225,8 @@ fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> R
     let (mut frames_s, mut last, mut bytes) = (0.0, 0.0, 0);
     for (side, variants) in wanted(published) {
         let frames = f64::from(extent.rounds + MOST_WARMUP);
-        let ahead = started.elapsed().as_secs_f64() + frames_s + frames * GROWTH * last * variants.len() as f64;
+        let growth: f64 = variants.iter().map(|variant| variant.growth()).sum();
+        let ahead = started.elapsed().as_secs_f64() + frames_s + frames * growth * last;
         let too_large = format!("--quick takes N up to {}", extent.most_side);
         let why = if side > extent.most_side {
             Some(too_large)
@@ -231,7 +234,8 @@ fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> R
             let seconds = extent.seconds;
             Some(format!("frames would take some {ahead:.0} s in all, and there are {seconds:.0} s (--max-seconds)"))
         } else {
-            if watch(&format!("preparing {side}x{side} photons")).is_break() {
+            let names: Vec<_> = variants.iter().map(|variant| variant.at(side)).collect();
+            if watch(&format!("preparing {}", names.join("; "))).is_break() {
                 return Err(LabError::Interrupted);
             }
             match of_side(gpu, &mut scenes, (side, &variants), extent, bytes)? {
@@ -259,13 +263,12 @@ fn of_side(
     extent: &Extent,
     mut bytes: u64,
 ) -> Result<OfSide, LabError> {
-    let maps = methods::find("maps").map_err(RenderError::from)?;
     let (mut made, mut seconds) = (Vec::new(), 0.0);
     for &variant in variants {
         let settings = variant.settings(side).expect("the settings of a variant are shipped ones: a test runs them");
         let job = Job {
             scene: scene(scenes, variant.subject)?,
-            providers: Providers::of(maps),
+            providers: Providers::of(methods::find(variant.method()).map_err(RenderError::from)?),
             settings,
             camera: "region".to_owned(),
             size: extent.size,
@@ -300,7 +303,7 @@ fn time(
     let mut list = Vec::new();
     for ready in ready {
         let (now, subject) = (&now, ready.variant.subject);
-        let name = format!("{}, {}² photons", ready.variant.name(), ready.side);
+        let name = ready.variant.at(ready.side);
         let stages = ready.renderer.stages();
         let frame = move || {
             let frame = Frame { time: subject.time(now.get(), rounds.rounds), ..Frame::default() };

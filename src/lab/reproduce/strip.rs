@@ -25,7 +25,8 @@ pub fn strip(id: &str, pictures: &[(String, Measured)]) -> Option<String> {
             let corner = [GAP + across * x as f64, GAP + down * y as f64];
             canvas.picture(file, &Area { x: corner[0], y: corner[1], w: PICTURE, h: PICTURE });
             let error = m.relmse.map_or_else(|| "not judged".to_owned(), |error| format!("relMSE {:.2e}", error.value));
-            let lines = [format!("{}, {}² photons", m.variant.name(), m.side), error];
+            let fitted = m.fitted.map(|fit| format!(", fitted {:.2e} ({:.2} x)", fit.relmse.value, fit.scale));
+            let lines = [m.variant.at(m.side), error + &fitted.unwrap_or_default()];
             for (line, text) in lines.iter().enumerate() {
                 let middle = corner[1] + PICTURE + (line as f64 + 1.0) * 1.4 * LETTERS;
                 canvas.text(text, [corner[0] + PICTURE / 2.0, middle], LETTERS, Anchor::Middle, "#000000");

@@ -11,6 +11,8 @@ pub enum Subject {
     Animation,
     /// A row of Table 5: a model between two lights.
     Room(&'static str),
+    /// The wave of Rendering Water Caustics over its unit square.
+    Water,
 }
 
 /// When the animation's timed frames begin and end, s: while its sphere is in the beam.
@@ -26,6 +28,13 @@ const DEVIATIONS: [&str; 3] = [
     "the eye sees the receiver region straight on, without the glass, at the size stated: the picture that is timed is the one that is judged",
     "the photon image has two columns, position and flux (16 or 32 bits a channel), and all copies take both",
     "splats are Gaussians whose weights sum to one, of 3 texels in a map of maps.side; varying splats are drawn behind combine-all (the paper does not say behind which), as large as photons lie apart on the receiver",
+];
+
+/// The same of the paper on water.
+const WATER: [&str; 3] = [
+    "the scene is waves, the printed function over its unit square with the floor 0.8 below: the paper's pool, its floor's texture and its moment are not published",
+    "the sun map is a disc of 5 degrees with a soft edge, which the paper shows without a size; the truth has the sun's 0.53",
+    "the time is that of finding and looking up the light (waves/*, eye/surface), and not of the floor and the water drawn before and after it",
 ];
 
 impl Subject {
@@ -56,6 +65,7 @@ impl Subject {
             Self::Still => "glass-sphere",
             Self::Animation => "moving-sphere",
             Self::Room(_) => "two-lights",
+            Self::Water => "waves",
         }
     }
 
@@ -81,7 +91,7 @@ impl Subject {
         let [from, to] = ANIMATION;
         match self {
             Self::Animation => from + (to - from) * f64::from(k) / f64::from(rounds.max(1)),
-            Self::Still | Self::Room(_) => 0.0,
+            Self::Still | Self::Room(_) | Self::Water => 0.0,
         }
     }
 
@@ -102,6 +112,7 @@ impl Subject {
             Self::Room(_) => {
                 "the room is two-lights, five quads with the model and two point lights: the paper's, of 315 000 triangles, is not published, and its models have other numbers of triangles; the method is varying-multires, the paper's whole"
             }
+            Self::Water => return DEVIATIONS[..1].iter().copied().chain(WATER).collect(),
         };
         std::iter::once(own).chain(DEVIATIONS).collect()
     }

@@ -10,6 +10,7 @@ use crate::{
     lab::{Picture, Sequence, picture::REGION},
     methods,
     names::near,
+    passes::light,
     renderer::{self, Job, Providers},
     scene::{Place, Scene, SceneError, Written},
     settings::{SettingError, Settings},
@@ -88,7 +89,8 @@ pub(super) fn load(file: &str) -> Result<Sweep, SceneError> {
     for at in 0..parsed.scenes.len() {
         let reference = reader.reference(at)?;
         for method in &parsed.methods {
-            for set in product(&axes) {
+            let own: Vec<&Axis> = axes.iter().filter(|axis| concerns(&axis.key, method)).collect();
+            for set in product(&own) {
                 let job = reader.job(at, method, &set)?;
                 points.push(Spec { method: method.clone(), set, job, reference: reference.clone() });
             }
@@ -172,6 +174,17 @@ fn check(written: &Written, parsed: &SweepFile) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// Whether a key is one of a method's points: settings of another method are not, nor are those of photons where it
+/// shoots none. Of all of them it would have the same picture.
+fn concerns(key: &str, method: &str) -> bool {
+    let room = key.split('.').next().unwrap_or_default();
+    if methods::ALL.iter().any(|known| known.name() == room) {
+        return room == method;
+    }
+    let of_photons = room == "light" && key != light::PATHS.key;
+    !of_photons || methods::find(method).is_ok_and(|method| method.shoots())
+}
+
 /// Every key below `[set]`, in the order of the alphabet.
 fn axes(written: &Written, set: &Table) -> Result<Vec<Axis>, SceneError> {
     let (mut axes, mut settings, known) = (Vec::new(), Settings::default(), renderer::all_settings());
@@ -228,7 +241,7 @@ fn typed(value: &Value) -> String {
 }
 
 /// One value of each axis, the last one changing fastest.
-fn product(axes: &[Axis]) -> Vec<Pairs> {
+fn product(axes: &[&Axis]) -> Vec<Pairs> {
     axes.iter().fold(vec![Vec::new()], |points, axis| {
         let with = |point: &Vec<(String, String)>, value: &String| {
             point.iter().cloned().chain([(axis.key.clone(), value.clone())]).collect()

@@ -1,8 +1,9 @@
 //! The axes of gathering photons, and the paper's columns as presets of them.
 
-use super::{SIDE, SPLAT_SIZE, cells, large::RASTER_FROM};
+use super::{SIDE, SPLAT_SIZE, large::RASTER_FROM};
 use crate::{
     passes::{PlanError, light},
+    scene::{PathClass, Scene},
     settings::{Choice, Setting, Settings},
 };
 
@@ -48,8 +49,8 @@ pub static SPLAT: Choice = Choice {
     key: "maps.splat",
     default: AUTO,
     words: &[AUTO, "fixed", "varying", "thin-lens", "interpolated", "elliptic", "cells"],
-    doc: "how large splats are: auto: cells, but fixed where another axis, maps.splat_size or maps.raster_from is set for splats, or \
-          cells do not fit (light.layers beyond 10, maps.side beyond 2048); fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
+    doc: "how large splats are: auto: cells, but fixed where another axis, maps.splat_size or maps.raster_from is set for splats, in \
+          class all:N, whose cells are dear, and where maps.side is beyond 2048; fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
           its Fig. 7 compares: thin-lens: by where neighbouring rays come nearest; interpolated: of four sizes those that \
           a dozen photons fall into; ours: elliptic: ellipses that reach to the photons beside them; cells: no splats: the light between the corners of a photon's texel, exactly where \
           it lands",
@@ -95,28 +96,33 @@ const PRESETS: [(&str, [&str; 4]); 11] = [
 const KEYS: [&Choice; 4] = [&TRAVERSE, &MERGE, &SPLAT, &TARGET];
 
 impl<'s> Axes<'s> {
-    /// The axes in force, be they of one meaning together or not.
-    pub fn of(settings: &'s Settings) -> Self {
+    /// As set, be they of one meaning together or not; what splats are is left open where nobody says.
+    pub fn asked(settings: &'s Settings) -> Self {
         let preset = PRESETS.iter().find(|(name, _)| *name == settings.choice(&GATHER)).map(|(_, values)| *values);
         let [traverse, merge, splat, target] = preset.unwrap_or_else(|| KEYS.map(|key| settings.choice(key)));
-        let axes = Self { traverse, merge, splat, target };
-        if splat == AUTO { Self { splat: axes.chosen(settings), ..axes } } else { axes }
+        Self { traverse, merge, splat, target }
+    }
+
+    /// The axes in force, be they of one meaning together or not.
+    pub fn of(settings: &'s Settings, scene: &Scene) -> Self {
+        let axes = Self::asked(settings);
+        if axes.splat == AUTO { Self { splat: axes.chosen(settings, scene), ..axes } } else { axes }
     }
 
     /// What the light is spread by where nobody says.
-    fn chosen(self, settings: &Settings) -> &'static str {
+    fn chosen(self, settings: &Settings, scene: &Scene) -> &'static str {
         let plain = (self.traverse, self.merge, self.target) == ("compute", "none", "single");
         let splats = [&SPLAT_SIZE, &RASTER_FROM].iter().any(|key| settings.is_set(Setting::Whole(key)));
-        let fit = settings.whole(&light::LAYERS) <= cells::LAYERS_MOST && settings.whole(&SIDE) <= SIDE_MOST;
-        if plain && !splats && fit { "cells" } else { "fixed" }
+        let one_way = !matches!(light::paths(scene, settings), PathClass::All(_));
+        if plain && !splats && one_way && settings.whole(&SIDE) <= SIDE_MOST { "cells" } else { "fixed" }
     }
 
     /// As [`Self::of`].
     ///
     /// # Errors
     /// Axes that contradict the preset, or each other.
-    pub fn checked(settings: &'s Settings) -> Result<Self, PlanError> {
-        let axes = Self::of(settings);
+    pub fn checked(settings: &'s Settings, scene: &Scene) -> Result<Self, PlanError> {
+        let axes = Self::of(settings, scene);
         for (key, value) in KEYS.into_iter().zip(axes.values()) {
             let asked = settings.choice(key);
             if settings.is_set(Setting::Choice(key)) && asked != value {
@@ -206,15 +212,31 @@ mod tests {
 
     #[test]
     fn every_word_of_the_presets_is_one_of_its_axis() {
+        let scene = Scene::load("glass-sphere", &[]).unwrap();
         assert_eq!(PRESETS.map(|(name, _)| name).as_slice(), &GATHER.words[1..]);
         for (name, values) in PRESETS {
             assert!(KEYS.iter().zip(values).all(|(key, value)| key.words.contains(&value)), "{name}");
-            assert!(Axes::checked(&settings(&[("maps.gather", name)])).is_ok());
+            assert!(Axes::checked(&settings(&[("maps.gather", name)]), &scene).is_ok());
+        }
+    }
+
+    #[test]
+    fn light_is_spread_by_cells_where_nobody_says() {
+        let splat = |name: &str, set: &[(&str, &str)]| {
+            Axes::of(&settings(set), &Scene::load(name, &[]).unwrap()).splat.to_owned()
+        };
+        assert_eq!(splat("glass-sphere", &[]), "cells");
+        assert_eq!(splat("room", &[]), "fixed", "all:3");
+        for set in
+            [("maps.splat_size", "5"), ("maps.merge", "exact"), ("maps.traverse", "fetch"), ("maps.side", "4096")]
+        {
+            assert_eq!(splat("glass-sphere", &[set]), "fixed", "{set:?}");
         }
     }
 
     #[test]
     fn what_has_no_meaning_is_refused_with_the_reason() {
+        let scene = Scene::load("glass-sphere", &[]).unwrap();
         let refused: [&[(&str, &str)]; 13] = [
             &[("maps.gather", "fetch"), ("maps.traverse", "hierarchical")],
             &[("maps.merge", "last"), ("maps.traverse", "fetch")],
@@ -231,10 +253,10 @@ mod tests {
             &[("maps.splat", "thin-lens"), ("maps.traverse", "hierarchical"), ("maps.merge", "last")],
         ];
         for set in refused {
-            let text = Axes::checked(&settings(set)).unwrap_err().to_string();
+            let text = Axes::checked(&settings(set), &scene).unwrap_err().to_string();
             assert!(set.iter().any(|(key, value)| text.contains(&format!("{key}={value}"))), "{text}");
         }
         let agreeing = [("maps.gather", "combine-all"), ("maps.merge", "all")];
-        assert_eq!(Axes::checked(&settings(&agreeing)).unwrap().merge, "all");
+        assert_eq!(Axes::checked(&settings(&agreeing), &scene).unwrap().merge, "all");
     }
 }

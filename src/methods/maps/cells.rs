@@ -35,7 +35,7 @@ const TALLY_BYTES: u64 = 9 * 4;
 /// listed.
 const GROUPS: u32 = 4096;
 /// Photons a sample that a work group's shared memory holds for 41 samples, of the 16 KiB that every device has.
-pub const LAYERS_MOST: u32 = 10;
+const LAYERS_MOST: u32 = 10;
 /// Bands of light.
 const BANDS: f32 = 3.0;
 /// Invocations along one side of the other work groups.

@@ -21,7 +21,7 @@ pub static COPY: Choice = Choice {
 
 /// Whether photons are traced into float16.
 pub fn halves(settings: &Settings) -> bool {
-    Axes::of(settings).traverse == "copy" && settings.choice(&COPY) != "32-32"
+    Axes::asked(settings).traverse == "copy" && settings.choice(&COPY) != "32-32"
 }
 
 /// The photons as vertices: two attributes, in the order of the photon image's layers and rows.
@@ -35,7 +35,7 @@ pub struct Vertices {
 impl Vertices {
     /// The buffers, which all views share; `None` where nothing is copied.
     pub fn plan(job: &mut Job<'_>) -> Option<Self> {
-        if Axes::of(job.settings).traverse != "copy" {
+        if Axes::asked(job.settings).traverse != "copy" {
             return None;
         }
         let (format, converts) = match job.settings.choice(&COPY) {

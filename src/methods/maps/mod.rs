@@ -34,6 +34,7 @@ use crate::{
         eye::SurfaceProvider,
         light::{self, Column, Job, Photons, Taker, Wanted},
     },
+    scene::Scene,
     settings::{Choice, Real, Setting, Settings, Whole},
 };
 
@@ -188,7 +189,7 @@ impl Method for Maps {
 
     fn needs(&self, settings: &Settings) -> Vec<Feature> {
         let mut needs = vec![Feature::Float32Blend, Feature::LargePoints];
-        let axes = Axes::of(settings);
+        let axes = Axes::asked(settings);
         if axes.streams() {
             needs.extend([Feature::GeometryShader, Feature::TransformFeedback]);
         } else if culls(settings, axes) {
@@ -201,8 +202,8 @@ impl Method for Maps {
         SETTINGS
     }
 
-    fn decided(&self, settings: &Settings) -> Vec<(&'static str, String)> {
-        Axes::of(settings).pairs()
+    fn decided(&self, settings: &Settings, scene: &Scene) -> Vec<(&'static str, String)> {
+        Axes::of(settings, scene).pairs()
     }
 
     fn shoots(&self) -> bool {
@@ -219,14 +220,14 @@ impl Method for Maps {
 
     fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
         let settings = work.settings;
-        let wanted = Wanted { columns: columns(settings), halves: copied::halves(settings) };
+        let wanted = Wanted { columns: columns(settings, work.scene), halves: copied::halves(settings) };
         Ok(Planned::of(light::shoot(work, &wanted, PlannedMaps::begin)?, PlannedMaps::provide))
     }
 }
 
 /// The photon columns that are read, as set.
-fn columns(settings: &Settings) -> Vec<Column> {
-    let axes = Axes::of(settings);
+fn columns(settings: &Settings, scene: &Scene) -> Vec<Column> {
+    let axes = Axes::of(settings, scene);
     if axes.splat == "cells" { cells::COLUMNS.to_vec() } else { Splats::of(axes, settings).columns().to_vec() }
 }
 
@@ -258,7 +259,7 @@ struct PlannedMaps {
 impl PlannedMaps {
     /// Images and buffers that all views share.
     fn begin(job: &mut Job<'_>) -> Result<Self, PlanError> {
-        let axes = Axes::checked(job.settings)?;
+        let axes = Axes::checked(job.settings, job.scene)?;
         let side = job.settings.whole(&SIDE);
         let views = views::receiving(job, axes, side, job.settings.whole(&SPLAT_SIZE));
         let splats = Splats::of(axes, job.settings);

@@ -22,7 +22,7 @@ fn apart(emission: &Emission, receiver: &Region, side: f64) -> f64 {
 /// touch all over the map: then light is gathered.
 pub fn warning(shown: &Outcome<'_>) -> Option<String> {
     let Outcome { scene, receiver, settings, account } = *shown;
-    if Axes::of(settings).splat != "fixed" {
+    if Axes::of(settings, scene).splat != "fixed" {
         return None;
     }
     let emissions = light::emissions(scene, settings, receiver).ok()?;

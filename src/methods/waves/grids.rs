@@ -1,7 +1,7 @@
 //! Stages that find the water's light once a frame, whatever is seen of it: on the vertices of a fine mesh, or in a target of
 //! fixed resolution with its mip maps.
 
-use super::{ANISOTROPY, MESH, SIDE, Sky, with};
+use super::{ANISOTROPY, FILTER, MESH, SIDE, Sky, with};
 use crate::{
     gpu::{Format, ImageId, Lifetime, Resource},
     passes::{Work, eye::SurfaceProvider},
@@ -78,6 +78,8 @@ impl Target {
         let provider = sky.provider_of("waves/texture.glsl", ("waves_texture", Resource::Image(self.image)));
         let defines = with(provider.defines, "WAVES_SIDE", self.side);
         let defines = with(defines, "WAVES_LEVELS", levels(self.side));
+        let cubic = settings.choice(&FILTER) == "cubic";
+        let defines = if cubic { with(defines, "WAVES_CUBIC", 1) } else { defines };
         SurfaceProvider { defines: with(defines, "WAVES_ANISOTROPY", settings.whole(&ANISOTROPY)), ..provider }
     }
 }

@@ -3,6 +3,8 @@
 //! rectangle is water, heights and colours are kept in float32, and textures are filtered in the shader, in full precision.
 
 mod grids;
+mod inverse;
+mod shade;
 mod suns;
 
 use grids::{Mesh, Target};
@@ -17,9 +19,9 @@ use crate::{
 static VARIANT: Choice = Choice {
     key: "waves.variant",
     default: "pixel",
-    words: &["listing", "pixel", "shortcut", "texture", "vertex"],
+    words: &["inverse", "listing", "pixel", "shortcut", "texture", "vertex"],
     doc: "where the water's light is found: vertex: on a fine mesh, by finite differences; pixel: at every point seen; texture: in a \
-          target of fixed resolution, with mip maps; shortcut: pixel without refraction; listing: the code as printed",
+          target of fixed resolution, with mip maps; shortcut: pixel without refraction; listing: the code as printed; inverse: ours, all light of each point, in W/m²",
 };
 
 static MESH: Whole = Whole {
@@ -46,11 +48,19 @@ static ANISOTROPY: Whole = Whole {
     doc: "with waves.variant = texture, how often the target is looked up along a pixel's longer axis, at most",
 };
 
+static FILTER: Choice = Choice {
+    key: "waves.filter",
+    default: "linear",
+    words: &["cubic", "linear"],
+    doc: "with waves.variant = texture, what lies between texels: linear, as hardware has it, which shows a cross about bright spots; \
+          cubic: ours, of 16 texels, with a fiftieth of its power",
+};
+
 static SUN_WIDTH: Real = Real {
     key: "waves.sun_width",
     unit: "degrees",
-    // The water of the paper's Figure 9 leans most rays by less than half of it.
-    default: Some(20.0),
+    // Of the paper's wave, most of what lies within 0.6 of its origin is then lit, and its crests and troughs stand out.
+    default: Some(5.0),
     range: 0.0..=180.0,
     doc: "width of the sun in the sun map, where it has half its brightness; 0: the scene's, or 0.53 where that has none",
 };
@@ -92,11 +102,13 @@ static SETTINGS: &[Setting] = &[
     Setting::Whole(&MESH),
     Setting::Whole(&SIDE),
     Setting::Whole(&ANISOTROPY),
+    Setting::Choice(&FILTER),
     Setting::Real(&SUN_WIDTH),
     Setting::Real(&SUN_EDGE),
     Setting::Real(&SUN_DISTANCE),
     Setting::Real(&ABSORBED),
     Setting::Choice(&SCREEN_DEPTH),
+    Setting::Whole(&inverse::CELLS),
 ];
 
 static CHAIN: &[Link] = &[
@@ -110,11 +122,13 @@ static CHAIN: &[Link] = &[
             "waves.mesh",
             "waves.side",
             "waves.anisotropy",
+            "waves.filter",
             "waves.sun_width",
             "waves.sun_edge",
             "waves.sun_distance",
             "waves.absorbed",
             "waves.screen_depth",
+            "waves.cells",
             "eye.samples",
         ],
     },
@@ -144,15 +158,18 @@ impl Method for Waves {
         SETTINGS
     }
 
-    fn is_relative(&self, _: &Settings) -> bool {
-        true
+    fn is_relative(&self, settings: &Settings) -> bool {
+        settings.choice(&VARIANT) != "inverse"
     }
 
     fn stages(&self) -> &'static [&'static str] {
-        &["waves/vertices", "waves/texture"]
+        &["waves/vertices", "waves/texture", "waves/rays", "waves/bounds"]
     }
 
     fn warnings(&self, shown: &Outcome<'_>) -> Vec<String> {
+        if shown.settings.choice(&VARIANT) == "inverse" {
+            return Vec::new();
+        }
         suns::warnings(shown.scene)
     }
 
@@ -162,6 +179,9 @@ impl Method for Waves {
 
     fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
         check(work.settings)?;
+        if work.settings.choice(&VARIANT) == "inverse" {
+            return inverse(work);
+        }
         if let Some(reason) = suns::nothing(work.scene) {
             return Ok(Planned::LeftOut(reason));
         }
@@ -180,6 +200,17 @@ impl Method for Waves {
         };
         Ok(Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }))
     }
+}
+
+/// The variant of all light.
+fn inverse(work: &mut Work<'_>) -> Result<Planned, PlanError> {
+    if work.scene.lights.is_empty() {
+        return Ok(Planned::LeftOut("there is no light"));
+    }
+    Ok(match inverse::plan(work)? {
+        Some(surface) => Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }),
+        None => Planned::LeftOut(suns::NO_WATER),
+    })
 }
 
 /// What has no meaning together.

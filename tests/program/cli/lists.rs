@@ -26,7 +26,7 @@ fn every_list_has_every_format() {
 #[test]
 fn methods_list_every_setting_with_unit_default_range_and_meaning() {
     let methods = nephroid("methods --format json").ok().json();
-    assert_eq!(column(&methods["methods"], "name"), ["maps"]);
+    assert_eq!(column(&methods["methods"], "name"), ["maps", "waves"]);
     let known: Vec<_> = nephroid::renderer::all_settings();
     assert_eq!(column(&methods["settings"], "setting"), known.iter().map(|s| s.key()).collect::<Vec<_>>());
     for key in ["default", "range", "doc"] {

@@ -101,6 +101,26 @@ fn figures_and_their_constants() {
     assert_eq!(result["constants"]["flip_pixels_per_degree"], 67.0);
 }
 
+/// 0.5 against 1, and right up to a scale: 2 fits it exactly.
+#[test]
+fn a_relative_picture_is_told_raw_and_fitted() {
+    let folder = folder();
+    let reference = Picture::of(1.0).write(&folder, "r.exr");
+    let image = Picture::of(0.5).about("surface", "relative").write(&folder, "i.exr");
+    let result = &compare(&[&image, "--reference", &reference, "--format", "json"]).json()["results"][0];
+    assert_eq!(
+        (result["fitted"]["scale"].as_f64(), result["fitted"]["relmse"]["value"].as_f64()),
+        (Some(2.0), Some(0.0))
+    );
+    assert!((result["measures"]["relmse"]["value"].as_f64().unwrap() - 0.25 / 1.04).abs() < ROUNDING);
+    for format in ["table", "csv", "md"] {
+        let out = compare(&[&image, "--reference", &reference, "--format", format]).out;
+        assert!(out.contains("relmse_fitted") && out.contains("scale"), "{out}");
+    }
+    let plain = Picture::of(0.5).write(&folder, "p.exr");
+    assert!(!compare(&[&plain, "--reference", &reference]).out.contains("scale"), "what is absolute has no scale");
+}
+
 /// Each format names every measure, and its constants; CSV is a record a measure.
 #[test]
 fn every_format_has_every_measure() {

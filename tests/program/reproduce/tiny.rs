@@ -31,7 +31,20 @@ fn what_runs_is_measured_with_all_that_it_depends_on() {
         assert_eq!(report["schema"], "nephroid.reproduce/1");
         let rows = report["rows"].as_array().unwrap();
         assert_eq!(rows.len(), papers::find(id).unwrap().figures.len());
-        let keys = ["row", "column", "unit", "published", "measured", "ratio", "relmse", "kept", "points", "missing"];
+        let keys = [
+            "row",
+            "column",
+            "unit",
+            "published",
+            "measured",
+            "ratio",
+            "relmse",
+            "relmse_fitted",
+            "scale",
+            "kept",
+            "points",
+            "missing",
+        ];
         for row in rows {
             let row = row.as_object().unwrap();
             assert_eq!(row.keys().collect::<Vec<_>>(), keys);
@@ -55,6 +68,24 @@ fn what_runs_is_measured_with_all_that_it_depends_on() {
         assert!(shares.iter().all(|p| p["valid_photons"].as_f64().is_some_and(|share| share > 0.1 && share < 1.0)));
         assert_eq!(report["shape"].as_array().unwrap().len(), columns - 1, "each column beside the first");
     }
+    assert_quiet(&gpu);
+}
+
+/// The water paper's pictures: no photons, and both errors of each.
+#[test]
+fn what_is_right_up_to_a_scale_is_told_raw_and_fitted() {
+    let gpu = gpu();
+    let report = run(&gpu, "waves.figure9", &Extent { most_side: 128, ..extent() });
+    let rows = report["rows"].as_array().unwrap();
+    let measured: Vec<&Value> = rows.iter().filter(|row| !row["measured"].is_null()).collect();
+    let names: Vec<_> = measured.iter().map(|row| row["row"].as_str().unwrap()).collect();
+    assert_eq!(names, ["per vertex, 32", "per vertex, 128", "per pixel", "texture, 128"]);
+    for row in measured {
+        let [raw, fitted] = ["relmse", "relmse_fitted"].map(|key| row[key]["value"].as_f64().unwrap());
+        assert!(row["measured"]["value"].as_f64() > Some(0.0) && row["scale"].as_f64() > Some(0.0), "{row}");
+        assert!(0.0 < fitted && fitted <= raw, "{row}");
+    }
+    assert!(report["photons"].as_array().unwrap().iter().all(|p| p["valid_photons"].is_null()));
     assert_quiet(&gpu);
 }
 

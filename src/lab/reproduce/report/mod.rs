@@ -25,13 +25,13 @@ use shape::{Shape, shape};
 
 pub use catalogue::CatalogueReport;
 
-/// Light that arrived with one variant at one N.
+/// Light that arrived with one variant at one N, where photons brought it.
 #[derive(Clone, Debug, Serialize)]
 struct Arrived {
     variant: String,
     n: u32,
-    valid_photons: f64,
-    valid_flux: f64,
+    valid_photons: Option<f64>,
+    valid_flux: Option<f64>,
     settings: Map<String, Value>,
 }
 
@@ -154,7 +154,7 @@ fn file_of(m: &Measured) -> String {
 
 impl Arrived {
     fn of(m: &Measured) -> Self {
-        let [valid_photons, valid_flux] = m.valid;
+        let [valid_photons, valid_flux] = [0, 1].map(|at| m.valid.map(|valid| valid[at]));
         let set = m.variant.set(m.side).into_iter().map(|(key, value)| (key, value.into()));
         Self { variant: m.variant.name(), n: m.side, valid_photons, valid_flux, settings: set.collect() }
     }
@@ -177,6 +177,8 @@ impl Report for ReproduceReport {
             let [measured, interval] = cells(r.measured.as_ref());
             let ratio = r.ratio.map_or(Cell::None, |ratio| Cell::text(short(ratio)));
             let [relmse, _] = cells(r.relmse.as_ref());
+            let [fitted, _] = cells(r.relmse_fitted.as_ref());
+            let scale = r.scale.map_or(Cell::None, |scale| Cell::text(short(scale)));
             let kept = r.kept.map_or(Cell::None, |kept| Cell::Real(kept, 4));
             let points = r.points.map_or(Cell::None, Cell::Count);
             let missing = r.missing.as_ref().map_or(Cell::None, Cell::text);
@@ -191,6 +193,8 @@ impl Report for ReproduceReport {
                 interval,
                 ratio,
                 relmse,
+                fitted,
+                scale,
                 kept,
                 points,
                 missing,
@@ -201,9 +205,11 @@ impl Report for ReproduceReport {
             let within = Cell::text(if s.within { "yes" } else { "no" });
             vec![Cell::text(&s.from), Cell::text(&s.to), Cell::text(short(s.published)), measured, interval, within]
         });
-        let photons = self.photons.iter().map(|p| {
+        let shot = self.photons.iter().filter(|p| p.valid_photons.is_some());
+        let photons = shot.map(|p| {
             let n = Cell::Count(p.n.into());
-            vec![Cell::text(&p.variant), n, Cell::Real(p.valid_photons, 4), Cell::Real(p.valid_flux, 4)]
+            let share = |share: Option<f64>| share.map_or(Cell::None, |share| Cell::Real(share, 4));
+            vec![Cell::text(&p.variant), n, share(p.valid_photons), share(p.valid_flux)]
         });
         let of_rows = vec![
             "row",
@@ -214,6 +220,8 @@ impl Report for ReproduceReport {
             "99 %",
             "ratio",
             "relmse",
+            "relmse fitted",
+            "scale",
             "kept",
             "points",
             "missing",

@@ -32,6 +32,9 @@ pub struct Row {
     pub ratio: Option<f64>,
     /// Of the picture of the frame that was timed.
     pub relmse: Option<Interval>,
+    /// The same with the scale that fits best, of a picture that is right only up to one; and that scale.
+    pub relmse_fitted: Option<Interval>,
+    pub scale: Option<f64>,
     /// Flux in the map over the flux that arrived in it: less where splats are dropped, more where clusters invent light.
     pub kept: Option<f64>,
     /// Points that gathering draws in all, where it draws points.
@@ -45,7 +48,7 @@ fn unit(published: &Published, column: &str) -> &'static str {
     match (published.id.as_str(), column) {
         ("maps.table4" | "lines.table2", _) => "fps",
         (_, name) if name.ends_with("fps") => "fps",
-        ("maps.table1" | "maps.table2" | "maps.table3" | "maps.figure7" | "lines.table1", _) => "ms",
+        ("maps.table1" | "maps.table2" | "maps.table3" | "maps.figure7" | "waves.figure9" | "lines.table1", _) => "ms",
         (_, "sun_disc_degrees") => "degrees",
         (_, "mental_ray_minutes") => "minutes",
         (_, "absorbed_per_metre") => "1/m",
@@ -63,6 +66,8 @@ impl Row {
             measured: None,
             ratio: None,
             relmse: None,
+            relmse_fitted: None,
+            scale: None,
             kept: None,
             points: None,
             missing,
@@ -81,6 +86,8 @@ impl Row {
             measured: Some(measured),
             ratio,
             relmse: of_one.and_then(|m| m.relmse).map(of_error),
+            relmse_fitted: of_one.and_then(|m| m.fitted).map(|fit| of_error(fit.relmse)),
+            scale: of_one.and_then(|m| m.fitted).map(|fit| fit.scale),
             kept: of_one.and_then(|m| m.kept),
             points: of_one.and_then(Measured::points),
             ..Self::missing(published, figure, None)
