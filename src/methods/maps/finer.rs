@@ -53,6 +53,9 @@ pub struct Finer {
     most: u32,
 }
 
+/// Gives a pass what all passes over cells take.
+type Give<'a> = dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p> + 'a;
+
 /// Push constants of `glsl/maps/cells_refine.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -154,7 +157,7 @@ impl Finer {
         job: &mut Job<'_>,
         view: usize,
         (side, diameter, judge): (i32, f32, Judge),
-        (known, give): (&[(&'static str, Resource)], &dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>),
+        (known, give): (&[(&'static str, Resource)], &Give<'_>),
         name_of: &dyn Fn(&str) -> String,
     ) {
         let tracing = Tracing {

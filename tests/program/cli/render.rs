@@ -151,12 +151,12 @@ fn photons_too_few_for_their_splats_are_said_with_the_remedy() {
         let mean = values.iter().sum::<f32>() / values.len() as f32;
         (ran.err, values.into_iter().fold(f32::INFINITY, f32::min) / mean)
     };
-    let few = "--set light.side=64 --set maps.side=128";
+    let few = "--set maps.traverse=fetch --set light.side=64 --set maps.side=128";
     let (said, darkest) = of(few);
     let remedies = ["raise light.side to 121", "raise maps.splat_size to 6", "lower maps.side to 67"];
     assert!(said.contains(SAID) && remedies.iter().all(|remedy| said.contains(remedy)), "{said}");
     assert_eq!(darkest, 0.0);
-    let ways = ["light.side=121", "maps.splat_size=6", "maps.side=67", "maps.gather=varying-single"];
+    let ways = ["light.side=121", "maps.splat_size=6", "maps.side=67", "maps.splat=varying"];
     for way in ways {
         let (said, darkest) = of(&format!("{few} --set {way}"));
         println!("{way}: {darkest}");
