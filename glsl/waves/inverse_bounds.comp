@@ -2,13 +2,17 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-// Where rays of cells can land, at any depth: of a cell by its four corners (LEVEL 0), of a level by the four below it.
+// Where rays of cells can land, at any depth: of a cell by its four corners (OF_CELLS), of a node above them by the four below it.
 
 #define INVERSE_RAYS readonly
 #include "waves/inverse.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 36, scalar) buffer WaterBoundsAll { WaterBounds at[]; } water_bounds;
+
+layout(push_constant, scalar) uniform Push {
+    int level;
+} push;
 
 const float FAR_OFF = 3e38; // bounds that hold nothing have their least above their greatest
 
@@ -19,12 +23,12 @@ void join(inout vec4 all, vec2 low, vec2 high) {
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     uint light = gl_GlobalInvocationID.z;
-    if (any(greaterThanEqual(at, level_size(LEVEL)))) return;
+    if (any(greaterThanEqual(at, level_size(push.level)))) return;
     vec4 nothing = vec4(vec2(FAR_OFF), vec2(-FAR_OFF));
     WaterBounds all = WaterBounds(nothing, nothing);
     bool lit = false;
     for (int k = 0; k < 4; k++) {
-#if LEVEL == 0
+#ifdef OF_CELLS
         WaterRay ray = water_rays.at[ray_at(light, at + ivec2(k & 1, k >> 1))];
         if (any(lessThan(ray.passes, vec3(0.0)))) continue;
         lit = lit || any(greaterThan(ray.passes, vec3(0.0)));
@@ -38,8 +42,8 @@ void main() {
         }
 #else
         ivec2 child = 2 * at + ivec2(k & 1, k >> 1);
-        if (any(greaterThanEqual(child, level_size(LEVEL - 1)))) continue;
-        WaterBounds part = water_bounds.at[bounds_at(light, LEVEL - 1, child)];
+        if (any(greaterThanEqual(child, level_size(push.level - 1)))) continue;
+        WaterBounds part = water_bounds.at[bounds_at(light, push.level - 1, child)];
         if (part.near.x > part.near.z) continue;
         lit = true;
         join(all.near, part.near.xy, part.near.zw);
@@ -47,5 +51,5 @@ void main() {
 #endif
     }
     if (!lit) all = WaterBounds(nothing, nothing);
-    water_bounds.at[bounds_at(light, LEVEL, at)] = all;
+    water_bounds.at[bounds_at(light, push.level, at)] = all;
 }

@@ -94,11 +94,12 @@ float triangle_flux(WaterLight from, vec3 a, vec3 b, vec3 c) {
     return max(2.0 * atan(-dot(across, p), below), 0.0);
 }
 
-// Share of a triangle of rays that lights the place, over the area that it lights, 1/m^2.
-float lights(WaterLight from, WaterRay rays[3], int band, Place at) {
+// Share of a triangle of rays that lights the place, over the area that it lights, 1/m^2; and how far its rays went, m.
+float lights(WaterLight from, WaterRay rays[3], int band, Place at, out float metres) {
     vec4 x, y;
     float facing = 0.0; // of rays that go a metre down
     bool above = false;
+    metres = 0.0;
     for (int k = 0; k < 3; k++) {
         vec3 way = vec3(rays[k].slope[band], -1.0);
         float cosine = -dot(way, at.n);
@@ -107,6 +108,7 @@ float lights(WaterLight from, WaterRay rays[3], int band, Place at) {
         // Corners in the receiver have landed where they are.
         float down = dot(rays[k].start - at.p, at.n) / cosine;
         above = above || down > 0.0;
+        metres += max(down, 0.0) * length(way) / 3.0;
         vec3 aside = rays[k].start + max(down, 0.0) * way - at.p;
         x[k] = dot(aside, at.to_x);
         y[k] = dot(aside, at.to_y);
@@ -153,22 +155,18 @@ vec3 triangle_light(WaterLight from, WaterRay rays[3], Place at) {
     for (int k = 0; k < 3; k++) {
         if (any(lessThan(rays[k].passes, vec3(0.0)))) return vec3(0.0);
     }
-    vec3 density;
-    for (int band = 0; band < INVERSE_BANDS; band++) density[band] = lights(from, rays, band, at);
+    vec3 density, metres;
+    for (int band = 0; band < INVERSE_BANDS; band++) density[band] = lights(from, rays, band, at, metres[band]);
 #if INVERSE_BANDS == 1
     density = density.xxx;
+    metres = metres.xxx;
 #endif
     if (!(max(density.x, max(density.y, density.z)) > 0.0)) return vec3(0.0);
 #ifdef BLOCKED
     if (is_blocked(rays, at)) return vec3(0.0);
 #endif
-    vec3 absorbed = vec3(0.0);
-    for (int k = 0; k < 3; k++) {
-        vec3 way = rays[k].start - at.p;
-        absorbed += water_frame().absorption * length(way) / 3.0;
-    }
     float flux = triangle_flux(from, rays[0].start, rays[1].start, rays[2].start);
-    return flux * from.light.power * passes * density * exp(-absorbed);
+    return flux * from.light.power * passes * density * exp(-water_frame().absorption * metres);
 }
 
 vec3 cell_light(WaterLight from, uint light, ivec2 cell, Place at) {

@@ -144,8 +144,7 @@ mod tests {
     /// Measured 2.5e-7.
     const DIFFERENCE: f64 = 1e-6;
 
-    /// Four times the root of the variance: 0.0246 U² of a fully developed sea (Pierson and Moskowitz's own figure is 0.0213 to
-    /// 0.0246, by α, β and where the wind is measured). The bands leave out 0.1 % of it.
+    /// Four times the root of the variance, of all waves together 0.0213 U²; the bands leave out 0.1 % of it.
     #[test]
     fn the_significant_height_is_the_spectrums() {
         let variance: f64 = Sea::of(&SWELL).0.iter().map(|w| 0.5 * w.first.amplitude.powi(2)).sum();

@@ -2,7 +2,12 @@
 
 use nephroid::{
     gpu::{Reflection, Sources},
-    passes::{accel, account::AccountRow, eye::FrameData},
+    passes::{
+        accel,
+        account::AccountRow,
+        eye::FrameData,
+        water::{RippleData, WaterData, WaterSine, WaterVertex, WaterWave},
+    },
     store::Store,
     view::ViewData,
 };
@@ -29,6 +34,11 @@ fn offsets_agree() {
         host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer, slide }),
         host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),
         host!("FrameData", FrameData { eye, time, index, seed, eye_media }),
+        host!("Water", WaterData { center, u, v, n, half_size, ior, absorption }),
+        host!("WaterSine", WaterSine { amplitude, number, phase }),
+        host!("WaterWave", WaterWave { middle, unit, phase, wave_size, factor, vertex_size, octaves }),
+        host!("WaterVertex", WaterVertex { height, normal }),
+        host!("Ripple", RippleData { number, amplitude, phase }),
         host!("View", ViewData { origin, x0, right, x1, up, y0, forward, y1, near, far, perspective, pad }),
     ];
     let defines: Vec<_> = [
@@ -47,7 +57,14 @@ fn offsets_agree() {
     let provided = [("capture.glsl", "maps/capture.glsl"), ("raster_view.glsl", "eye/raster_view.glsl")]
         .map(|(a, b)| (a.to_owned(), b.to_owned()));
     let mut seen: BTreeMap<(String, String), usize> = BTreeMap::new();
-    for file in ["light/account.comp", "eye/direct.frag", "eye/gbuffer.vert"] {
+    let plain = ["light/account.comp", "eye/direct.frag", "eye/gbuffer.vert"].map(|file| (file, Vec::new()));
+    let waters = ["WATER_SINE", "WATER_WAVE", "WATER_SEA", "WATER_HEIGHTS"].map(|kind| {
+        let grid = [("ACROSS", "4u"), ("ALONG", "4u"), ("LEVELS", "1"), ("OFFSETS", "0u"), ("BOUNDS_ALL", "1u")];
+        let more = [(kind, "1"), ("WATER_ACROSS", "4u"), ("WATER_ALONG", "4u")].into_iter().chain(grid);
+        ("waves/inverse_rays.comp", more.map(|(a, b)| (a.to_owned(), b.to_owned())).collect())
+    });
+    for (file, more) in plain.into_iter().chain(waters) {
+        let defines = [defines.clone(), more].concat();
         let words = Sources::default().compile(file, &defines, &provided, &Store::none()).unwrap();
         for m in Reflection::of(&words).unwrap().members {
             let before = seen.insert((m.structure.clone(), m.member.clone()), m.offset);

@@ -4,6 +4,7 @@
 mod common;
 mod cross;
 mod hard;
+mod inverse;
 mod model;
 
 use common::{

@@ -11,9 +11,14 @@ use glam::DVec3;
 use super::{shade, with};
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder},
-    passes::{PlanError, Work, accel, eye::SurfaceProvider, light, water::Water},
-    scene::{LightKind, Scene},
-    settings::Whole,
+    passes::{
+        PlanError, Work, accel,
+        eye::SurfaceProvider,
+        light,
+        water::{self, Water},
+    },
+    scene::{LightKind, PathClass, Scene},
+    settings::{Settings, Whole},
 };
 
 /// Cells of rays.
@@ -109,7 +114,8 @@ impl Inverse {
         pass.dispatch("waves/inverse_rays.comp", groups(self.grid.cells.map(|n| n + 1)), GROUP * GROUP);
         for (level, size) in self.grid.levels.iter().enumerate() {
             let pass = self.give(work.plan.pass(&format!("waves/bounds.{level}"))).write("water_bounds", self.bounds);
-            let pass = pass.define("LEVEL", level).offer("water_rays", self.rays);
+            let pass = if level == 0 { pass.define("OF_CELLS", 1) } else { pass };
+            let pass = pass.offer("water_rays", self.rays).push(&(level as i32));
             pass.dispatch("waves/inverse_bounds.comp", groups(*size), GROUP * GROUP);
         }
     }
@@ -123,6 +129,21 @@ impl Inverse {
         offers.extend([("water_rays", self.rays), ("water_bounds", self.bounds), ("water_lights", self.lights)]);
         SurfaceProvider { file: "waves/inverse_surface.glsl", defines, reads: Vec::new(), offers }
     }
+}
+
+/// What its picture does not show.
+pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
+    let mut all = Vec::new();
+    let class = light::paths(scene, settings);
+    if class != PathClass::Transmit1 {
+        all.push(format!(
+            "waves.variant=inverse finds the light that one water refracts once (transmit-1); of {class} it shows no other"
+        ));
+    }
+    if let Some(name) = water::waters(scene).nth(1).map(|other| &scene.objects[other].name) {
+        all.push(format!("waves know one water; '{name}' stands in the way of its light and makes none"));
+    }
+    all
 }
 
 /// The scene's lights: a sun as one, with its disc; what else has a size, in parts.

@@ -168,7 +168,7 @@ impl Method for Waves {
 
     fn warnings(&self, shown: &Outcome<'_>) -> Vec<String> {
         if shown.settings.choice(&VARIANT) == "inverse" {
-            return Vec::new();
+            return inverse::warnings(shown.scene, shown.settings);
         }
         suns::warnings(shown.scene)
     }

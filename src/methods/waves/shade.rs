@@ -16,7 +16,7 @@ pub fn shades(scene: &Scene, water: &Water) -> bool {
     let stands_low = |kind: &LightKind| {
         ways(kind, water).iter().any(|(d, aside)| {
             let elevation = (-d.dot(n)).clamp(-1.0, 1.0).asin() - aside;
-            !(elevation.tan() > steepest)
+            elevation <= 0.0 || elevation.tan() <= steepest
         })
     };
     others(scene, water).any(above) || scene.lights.iter().any(|light| stands_low(&light.kind))

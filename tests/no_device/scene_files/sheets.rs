@@ -12,6 +12,8 @@ type Case = (&'static str, &'static str, &'static str, &'static str, &'static st
 
 const HEIGHTS: &str = "[objects.ball.heights]\nfile = \"h.png\"\ncenter = [0, 1, 0]\nu = [2, 0, 0]\nv = [0, 0, -3]\n\
                        height = 0.5\nbase = -0.1\n";
+const SEA: &str = "[objects.ball.sea]\ncenter = [0, 1, 0]\nu = [1, 0, 0]\nv = [0, 0, -2]\nwind = 2\ndirection = 30\nspread = 4\n\
+                   count = 5\nshortest = 0.5\nlongest = 2\nfactor = 1\nspeed = 1\nseed = 7\ntime = 3\ngrid = 64\n";
 const WAVE: &str = "[objects.ball.wave]\ncenter = [0, 1, 0]\nu = [1, 0, 0]\nv = [0, 0, -2]\nlength = 2\n\
                     middle = [0.5, 1]\noctaves = 3\nwave_size = 10\nfactor = 1\nspeed = 2\nvertex_size = 0.01\n\
                     time = 0.5\ngrid = 32\n";
@@ -103,6 +105,22 @@ fn a_wave_has_the_papers_constants_where_the_file_is_silent() {
     }
 }
 
+/// Of nothing, of another seed, and still: by their keys.
+#[test]
+fn a_sea_is_that_of_its_seed_and_runs_by_its_speed() {
+    let folder = Folder::new();
+    let of = |from: &str, to: &str| folder.load(with(&SEA.replace(from, to)), &[]).unwrap();
+    let (sea, calm, other) = (of("", ""), of("factor = 1", "factor = 0"), of("seed = 7", "seed = 8"));
+    assert!(sheet_of(&calm).0.positions.iter().all(|p| p.z == 0.0));
+    assert_ne!(sheet_of(&sea).0.positions, sheet_of(&other).0.positions);
+    assert_ne!(sheet_of(&sea).0.positions, sheet_of(&sea.at(1.0)).0.positions);
+    // Three seconds at its own speed are one at three times it.
+    let fast = of("speed = 1", "speed = 3").at(1.0);
+    assert_eq!(sheet_of(&sea.at(3.0)).0.positions, sheet_of(&fast).0.positions);
+    assert!(!of("speed = 1", "speed = 0").moves());
+    assert!(sheet_of(&sea.at(1e6)).0.positions.iter().all(|p| p.is_finite()));
+}
+
 #[rustfmt::skip]
 const KEYS: &[Case] = &[
     ("height = 0.5", "height = nan", "heights.height", "NaN", "correct it"),
@@ -129,6 +147,19 @@ const KEYS: &[Case] = &[
     ("length = 2", "length = 1e-6", "wave.middle", "1000000.5", "a greater `length`"),
     ("middle = [0.5, 1]", "middle = [nan, 0]", "wave.middle", "NaN", "a greater `length`"),
     ("middle = [0.5, 1]", "middle = 1", "wave.middle", "one number", "[along u, along v]"),
+    ("wind = 2", "wind = 0", "sea.wind", "0", "a breeze on a pool is 1"),
+    ("wind = 2", "wind = nan", "sea.wind", "NaN", "a gale 20"),
+    ("direction = 30", "direction = 400", "sea.direction", "400", "a full turn is 360"),
+    ("spread = 4", "spread = -1", "sea.spread", "-1", "8 is usual"),
+    ("count = 5", "count = 0", "sea.count", "0", "64 is usual"),
+    ("count = 5", "count = 5000", "sea.count", "5000", "64 is usual"),
+    ("shortest = 0.5", "shortest = 0", "sea.shortest", "0", "correct it"),
+    ("shortest = 0.5", "shortest = 9", "sea.shortest", "9 m, where the longest is 2 m", "make it shorter"),
+    ("factor = 1", "factor = -1", "sea.factor", "-1", "the spectrum's own"),
+    ("speed = 1", "speed = inf", "sea.speed", "inf", "0 stands still"),
+    ("time = 3", "time = inf", "sea.time", "inf", "correct it"),
+    ("seed = 7", "seed = -1", "sea.seed", "-1", "write one of zero or more"),
+    ("grid = 64", "grid = 9000", "sea.grid", "9000", "256 is usual"),
     ("grid = 32", "grid = 9000", "wave.grid", "9000", "256 is usual"),
 ];
 
@@ -145,7 +176,11 @@ fn every_fault_of_a_sheet_names_its_key_and_remedy() {
     let folder = Folder::new();
     folder.write("h.png", grey([3, 3]));
     for (from, to, key, found, remedy) in KEYS {
-        let sheet = if key.starts_with("wave") { WAVE } else { HEIGHTS };
+        let sheet = match key.split('.').next() {
+            Some("wave") => WAVE,
+            Some("sea") => SEA,
+            _ => HEIGHTS,
+        };
         // A factor that is given twice would be the fault instead.
         let sheet = if to.contains("factor = 1e6") { sheet.replace("factor = 1\n", "") } else { sheet.to_owned() };
         assert!(sheet.contains(from), "{from}");
