@@ -90,6 +90,9 @@ fn levels(settings: &Settings) -> u32 {
     if settings.choice(&TRACER) == "bvh" { settings.whole(&ADAPT) } else { 0 }
 }
 
+/// Gives a pass what several take.
+type Give<'a> = &'a dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>;
+
 impl Finer {
     /// Adds the lists; `None` where no cell is traced finer.
     pub fn plan(job: &mut Job<'_>) -> Option<Self> {
@@ -154,7 +157,7 @@ impl Finer {
         job: &mut Job<'_>,
         view: usize,
         (side, diameter, judge): (i32, f32, Judge),
-        (known, give): (&[(&'static str, Resource)], &dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>),
+        (known, give): (&[(&'static str, Resource)], Give<'_>),
         name_of: &dyn Fn(&str) -> String,
     ) {
         let tracing = Tracing {
