@@ -47,16 +47,19 @@ fn each_level_brings_what_arrives_and_cuts_finer() {
 #[test]
 fn what_is_too_much_for_a_level_is_left_and_counted() {
     let gpu = gpu();
-    let set = |levels| [("light.side", "16"), ("maps.adapt", levels), ("maps.adapt_most", "40")];
+    let set = |levels, most| [("light.side", "16"), ("maps.adapt", levels), ("maps.adapt_most", most)];
     let own = 16 * 16 + 17 * 17;
     // Of the view's own grid what is left takes no ray.
-    let once = adapted(&gpu, "bunny", &set("1")).1;
-    assert!(once.refined <= 40 && once.left > 0, "{once:?}");
-    assert_eq!(once.samples, own + FINER * once.refined);
-    let (mut picture, counted) = adapted(&gpu, "bunny", &set("2"));
-    assert!(counted.refined <= 2 * 40 && counted.left > once.left, "{counted:?}");
-    let [deeper, left] = [counted.refined - once.refined, counted.left - once.left];
-    assert_eq!(counted.samples, once.samples + DEEPER * deeper + LEFT * left);
+    let few = adapted(&gpu, "bunny", &set("1", "40")).1;
+    assert!(few.refined <= 40 && few.left > 0, "{few:?}");
+    assert_eq!(few.samples, own + FINER * few.refined);
+    // Here the first level takes all of its cells, the second not.
+    let once = adapted(&gpu, "bunny", &set("1", "100")).1;
+    assert_eq!((once.refined, once.left), (few.refined + few.left, 0), "{once:?}");
+    let (mut picture, counted) = adapted(&gpu, "bunny", &set("2", "100"));
+    assert!(counted.refined <= once.refined + 100 && counted.left > 0, "{counted:?}");
+    let deeper = counted.refined - once.refined;
+    assert_eq!(counted.samples, once.samples + DEEPER * deeper + LEFT * counted.left);
     assert!((picture.energy.ratio.unwrap() - 1.0).abs() <= EXACT, "{:?}", picture.energy);
     let before = picture.map().0;
     picture.renderer.frame(&Frame::default()).unwrap();

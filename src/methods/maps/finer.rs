@@ -53,9 +53,6 @@ pub struct Finer {
     most: u32,
 }
 
-/// Gives a pass what all passes over cells take.
-type Give<'a> = dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p> + 'a;
-
 /// Push constants of `glsl/maps/cells_refine.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -92,6 +89,9 @@ impl Judge {
 fn levels(settings: &Settings) -> u32 {
     if settings.choice(&TRACER) == "bvh" { settings.whole(&ADAPT) } else { 0 }
 }
+
+/// Gives a pass what several take.
+type Give<'a> = &'a dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>;
 
 impl Finer {
     /// Adds the lists; `None` where no cell is traced finer.
@@ -157,7 +157,7 @@ impl Finer {
         job: &mut Job<'_>,
         view: usize,
         (side, diameter, judge): (i32, f32, Judge),
-        (known, give): (&[(&'static str, Resource)], &Give<'_>),
+        (known, give): (&[(&'static str, Resource)], Give<'_>),
         name_of: &dyn Fn(&str) -> String,
     ) {
         let tracing = Tracing {
