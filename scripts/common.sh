@@ -39,9 +39,21 @@ run() {
   return "$status"
 }
 
-# Sum of the medians of the stages that make the caustic, ms, from the samples of a render as CSV ($1).
+# A file ($1) with a part of it made anew ($3): what lies between the two comments that name a script ($2).
+between() {
+  local first="<!-- scripts/$2: from here -->" last="<!-- scripts/$2: to here -->" mark
+  for mark in "$first" "$last"; do
+    [ "$(grep -cxF -e "$mark" "$1")" = 1 ] || { printf '%s must have one line %s\n' "$1" "$mark" >&2; return 1; }
+  done
+  awk -v first="$first" -v last="$last" -v part="$3" '
+    $0 == last { inside = 0 }
+    !inside
+    $0 == first { inside = 1; while ((getline line < part) > 0) print line }' "$1"
+}
+
+# Sum of the medians of the stages that make the caustic (or of those that $2 matches), ms, from the samples of a render as CSV ($1).
 cost_of() {
-  awk -F, '$1 ~ /^(light|maps)\// && $2 != "" { print $1, $3 }' "$1" | sort -k 1,1 -k 2,2n | awk '
+  awk -F, -v stages="${2:-^(light|maps|waves)/}" '$1 ~ stages && $2 != "" { print $1, $3 }' "$1" | sort -k 1,1 -k 2,2n | awk '
     $1 != name { add(); name = $1; n = 0 } { ms[++n] = $2 }
     function add() { if (n) sum += (ms[int((n + 1) / 2)] + ms[int((n + 2) / 2)]) / 2 }
     END { add(); if (sum) printf "%.0f", sum; else printf "-" }'

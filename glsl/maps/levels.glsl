@@ -9,6 +9,12 @@ int level_side(int n, int level) {
     return (n + (1 << level) - 1) >> level;
 }
 
+// Whether all that a texel of a level covers lies in the image. Where sides are rounded up, some of it does not: photons that are
+// none, and fall nowhere.
+bool is_whole(int n, int level, ivec2 at) {
+    return all(lessThanEqual((at + 1) << level, ivec2(n)));
+}
+
 // In the place of the counts of splats below the four children of a texel: it is one splat itself.
 const uvec4 OWN = uvec4(0x80000000u, 0u, 0u, 0u);
 

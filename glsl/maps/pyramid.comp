@@ -40,7 +40,7 @@ void main() {
 #endif
 #ifdef CONVERGE
     ivec3 common_texel = NO_TEXEL;
-    bool converges = true;
+    bool converges = is_whole(push.side, push.level, texel.xy);
 #endif
     for (int k = 0; k < 4; k++) {
         ivec2 at = 2 * texel.xy + ivec2(k & 1, k >> 1);

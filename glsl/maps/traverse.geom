@@ -49,9 +49,9 @@ bool child_of(StreamPoint p, int k, out ivec2 texel) {
 #ifdef CONVERGE
 bool converges(StreamPoint p) {
     ivec3 common_texel = NO_TEXEL;
+    if (!is_whole(photons_side(), p.level, p.texel)) return false;
     for (int k = 0; k < 4; k++) {
-        ivec2 texel;
-        if (!child_of(p, k, texel)) continue;
+        ivec2 texel = 2 * p.texel + ivec2(k & 1, k >> 1);
         vec4 hit = hit_of(texel, p.level - 1, p.layer);
         float normal = flux_of(texel, p.level - 1, p.layer).w;
         if (!falls_into(hit, normal, push.light, push.map_side, common_texel)) return false;

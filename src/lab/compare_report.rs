@@ -38,10 +38,16 @@ struct Row {
 
 /// The best scale, and the judged figure with it.
 #[derive(Clone, Copy, Debug, Serialize)]
-struct FittedRow {
-    scale: f64,
+pub(super) struct FittedRow {
+    pub scale: f64,
     #[serde(serialize_with = "one")]
-    relmse: Measure,
+    pub relmse: Measure,
+}
+
+impl From<Fitted> for FittedRow {
+    fn from(Fitted { scale, relmse }: Fitted) -> Self {
+        Self { scale, relmse }
+    }
 }
 
 /// A limit that a measure may not exceed.
@@ -64,7 +70,7 @@ impl CompareReport {
             masked: c.masked,
             constants: c.constants,
             measures: c.measures,
-            fitted: c.fitted.map(|Fitted { scale, relmse }| FittedRow { scale, relmse }),
+            fitted: c.fitted.map(FittedRow::from),
         };
         Self {
             schema: "nephroid.compare/1",

@@ -204,7 +204,9 @@ impl Model {
             return own.is_some_and(|c| c.place.is_some() && (c.bounds[1] - c.bounds[0]).max_element() <= reach);
         }
         let tested = self.merge == Merge::All || self.merge == Merge::Last && level == 1;
-        tested && self.converges(&levels[level - 1], &Self::children(&levels[level - 1], at))
+        // What reaches beyond the photons has children that are none.
+        let whole = ((at + 1) * (1 << level)).max_element() <= levels[0].side as i32;
+        tested && whole && self.converges(&levels[level - 1], &Self::children(&levels[level - 1], at))
     }
 
     /// How many points each step takes.

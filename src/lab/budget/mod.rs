@@ -20,7 +20,7 @@ use super::{
 use crate::{
     gpu::Gpu,
     methods::{Link, Method, Shown},
-    metrics::bare_irradiance,
+    metrics::{Fitted, bare_irradiance},
     passes::{
         PlanError,
         light::{self, SIDE},
@@ -75,6 +75,8 @@ pub struct Chain {
     pub judged: Vec<bool>,
     /// W/m²
     pub e0: f64,
+    /// Of a picture that is right only up to a scale: the best one, against the first picture.
+    pub fitted: Option<Fitted>,
 }
 
 impl Budget {
@@ -99,7 +101,7 @@ impl Budget {
         let (mut shots, mut judged) = (Vec::new(), vec![true; job.size[0] as usize * job.size[1] as usize]);
         let class = light::paths(&job.scene, &job.settings);
         for link in method.chain() {
-            let named = title(link, self.all, class, [self.fine, job.settings.whole(&SIDE)]);
+            let named = title(link, self.all, class, self.sides(&job));
             if watch(&Progress::Begun(&named)).is_break() {
                 return Err(LabError::Interrupted);
             }
@@ -118,7 +120,13 @@ impl Budget {
             judged.iter_mut().zip(picture.unmasked()?).for_each(|(kept, unmasked)| *kept &= unmasked);
             shots.push(Shot::of(link, &picture)?);
         }
-        Ok(Chain::new(job.size.map(|n| n as usize), shots, judged, bare_irradiance(&job.scene)))
+        let chain = Chain::new(job.size.map(|n| n as usize), shots, judged, bare_irradiance(&job.scene));
+        Ok(if job.providers.is_relative(&job.settings) { chain.fit() } else { chain })
+    }
+
+    /// Light samples along each side of the fine grid, and as asked; none where no photons are shot.
+    fn sides(&self, job: &Job) -> Option<[u32; 2]> {
+        job.providers.shoot().then(|| [self.fine, job.settings.whole(&SIDE)])
     }
 
     fn truth(&self, job: &Job, paths: PathClass, store: &Store, watch: Watch) -> Result<Picture, LabError> {
@@ -143,8 +151,10 @@ fn rendered(gpu: &Gpu, job: &Job) -> Result<Picture, LabError> {
 }
 
 /// What a picture of the chain is called.
-pub(super) fn title(link: &Link, all: PathClass, class: PathClass, [fine, side]: [u32; 2]) -> String {
+pub(super) fn title(link: &Link, all: PathClass, class: PathClass, sides: Option<[u32; 2]>) -> String {
+    let [fine, side] = sides.unwrap_or_default();
     match link.shown {
+        Shown::AsAsked if sides.is_none() => "the picture".to_owned(),
         Shown::AllPaths => format!("truth of all paths ({all})"),
         Shown::PathClass => format!("truth of {class}"),
         Shown::Landings => format!("landings of {fine}² light samples, binned"),

@@ -11,10 +11,10 @@ use crate::{
         Cell, LabError, Provenance, Report, Table,
         colour_bar::with_bar,
         compare_maps::{MASKED, SCALE_PERCENTILE, diverging},
-        compare_report::figure,
+        compare_report::{FittedRow, figure},
         report::Format,
     },
-    passes::light::{self, SIDE},
+    passes::light,
     renderer::Job,
     stats,
     whole::OutFolder,
@@ -36,8 +36,9 @@ pub struct BudgetReport {
     size: [usize; 2],
     paths: String,
     all_paths: String,
-    light_side: u32,
-    fine_side: u32,
+    /// Where photons are shot.
+    light_side: Option<u32>,
+    fine_side: Option<u32>,
     seed: u64,
     pixels: usize,
     masked: usize,
@@ -45,6 +46,8 @@ pub struct BudgetReport {
     e0: f64,
     steps: Vec<Row>,
     whole: Step,
+    /// Of a picture that is right only up to a scale.
+    fitted: Option<FittedRow>,
     provenance: Provenance,
     warnings: Vec<String>,
 }
@@ -60,9 +63,8 @@ struct Row {
 impl BudgetReport {
     /// Of a chain made on a job.
     pub fn new(budget: &Budget, job: &Job, method: &'static str, chain: &Chain, provenance: Provenance) -> Self {
-        let (class, side) = (light::paths(&job.scene, &job.settings), job.settings.whole(&SIDE));
-        let titles: Vec<String> =
-            chain.shots.iter().map(|shot| title(shot.link, budget.all, class, [budget.fine, side])).collect();
+        let (class, sides) = (light::paths(&job.scene, &job.settings), budget.sides(job));
+        let titles: Vec<String> = chain.shots.iter().map(|shot| title(shot.link, budget.all, class, sides)).collect();
         let row =
             |(step, ends): (&Step, &[String])| Row { from: ends[0].clone(), to: ends[1].clone(), step: step.clone() };
         let pixels = chain.judged.iter().filter(|kept| **kept).count();
@@ -73,15 +75,16 @@ impl BudgetReport {
             size: chain.size,
             paths: class.to_string(),
             all_paths: budget.all.to_string(),
-            light_side: side,
-            fine_side: budget.fine,
+            light_side: sides.map(|[_, side]| side),
+            fine_side: sides.map(|[fine, _]| fine),
             seed: budget.seed,
             pixels,
             masked: chain.judged.len() - pixels,
             e0: chain.e0,
             steps: chain.steps.iter().zip(titles.windows(2)).map(row).collect(),
             whole: chain.whole.clone(),
-            warnings: warnings(budget, side, chain),
+            fitted: chain.fitted.map(FittedRow::from),
+            warnings: warnings(sides, chain),
             provenance,
         }
     }
@@ -97,10 +100,10 @@ impl BudgetReport {
     }
 }
 
-fn warnings(budget: &Budget, side: u32, chain: &Chain) -> Vec<String> {
+fn warnings(sides: Option<[u32; 2]>, chain: &Chain) -> Vec<String> {
     let mut warnings = Vec::new();
-    if side * FINER > budget.fine {
-        let (fine, least) = (budget.fine, side * FINER);
+    if let Some([fine, side]) = sides.filter(|[fine, side]| side * FINER > *fine) {
+        let least = side * FINER;
         warnings.push(format!("light.side {side} is not much coarser than the fine grid of {fine}: the step light.side means little; ask for --fine {least} or more"));
     }
     for step in &chain.steps {
@@ -120,13 +123,13 @@ fn warnings(budget: &Budget, side: u32, chain: &Chain) -> Vec<String> {
 impl Report for BudgetReport {
     fn heading(&self) -> Vec<String> {
         let [width, height] = self.size;
+        let sides = self.light_side.zip(self.fine_side);
+        let sides = sides.map(|(side, fine)| format!(", light.side {side}; fine grid {fine}²")).unwrap_or_default();
         vec![
             format!(
-                "{}, {}, {width}x{height} pixels of the region, light.side {}; fine grid {}²; E0 {:.4} W/m²; {}",
+                "{}, {}, {width}x{height} pixels of the region{sides}; E0 {:.4} W/m²; {}",
                 self.scene,
                 self.method,
-                self.light_side,
-                self.fine_side,
                 self.e0,
                 self.device()
             ),
@@ -172,7 +175,11 @@ impl Report for BudgetReport {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.warnings.iter().map(|warning| format!("warning: {warning}")).collect()
+        let fitted = self.fitted.as_ref().map(|fit| {
+            let (scale, relmse) = (figure(fit.scale), figure(fit.relmse.value));
+            format!("the picture is right only up to a scale: multiplied by {scale}, which fits best, its relMSE is {relmse}")
+        });
+        fitted.into_iter().chain(self.warnings.iter().map(|warning| format!("warning: {warning}"))).collect()
     }
 }
 

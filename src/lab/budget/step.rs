@@ -85,7 +85,15 @@ impl Chain {
         let share = |step: &Step| (all > 0.0).then(|| between.along(&step.gain, &whole.gain) / all);
         steps.iter_mut().for_each(|step| step.share = share(step));
         whole.share = share(&whole);
-        Self { size, shots, steps, whole, judged, e0 }
+        Self { size, shots, steps, whole, judged, e0, fitted: None }
+    }
+
+    /// With the scale that fits the last picture to the first best.
+    pub(super) fn fit(self) -> Self {
+        let between = Between { judged: &self.judged, e0: self.e0, truth: &self.shots[0] };
+        let last = self.shots.last().unwrap_or(&self.shots[0]);
+        let fitted = metrics::fitted(&between.pair(&self.shots[0], last), self.e0);
+        Self { fitted: Some(fitted), ..self }
     }
 }
 
@@ -105,16 +113,20 @@ impl Between<'_> {
     /// Noise of both pictures counts as that of the earlier one: their errors are independent, and the judged figure
     /// feels either alike to first order.
     fn relmse(&self, from: &Shot, to: &Shot) -> Measure {
+        let relmse = metrics::relmse(&self.pair(from, to), self.e0);
+        // Between two pictures of the device nothing is uncertain.
+        let known = from.variance.is_some() || to.variance.is_some();
+        if known { relmse } else { Measure { low: Some(relmse.value), high: Some(relmse.value), ..relmse } }
+    }
+
+    fn pair(&self, from: &Shot, to: &Shot) -> Pair {
         let kept = |values: &[f32]| self.kept(values).collect::<Vec<f64>>();
         let noises: Vec<Vec<f64>> = [from, to].iter().filter_map(|s| s.variance.as_deref()).map(kept).collect();
         let noise = noises.into_iter().reduce(|a, b| a.iter().zip(b).map(|(a, b)| a + b).collect());
-        let known = noise.is_some();
         let pair = Pair::new(BANDS, kept(&to.irradiance), kept(&from.irradiance), noise);
         let pair = pair.expect("pictures of one chain are of one size");
         let freedom = [from, to].iter().filter_map(|s| s.correlation.freedom).reduce(f64::min);
-        let relmse = metrics::relmse(&pair.correlated(Correlation { freedom, total: None }), self.e0);
-        // Between two pictures of the device nothing is uncertain.
-        if known { relmse } else { Measure { low: Some(relmse.value), high: Some(relmse.value), ..relmse } }
+        pair.correlated(Correlation { freedom, total: None })
     }
 
     fn energy(&self, from: &Shot, to: &Shot) -> Energy {

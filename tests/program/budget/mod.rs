@@ -43,8 +43,12 @@ impl Bench {
     }
 
     fn chain(&self, scene: &str, set: &[(&str, &str)], budget: &Budget) -> Chain {
+        self.chain_of("maps", scene, set, budget)
+    }
+
+    fn chain_of(&self, method: &str, scene: &str, set: &[(&str, &str)], budget: &Budget) -> Chain {
         let settings = [&[("light.side", SIDE), ("maps.side", "32"), ("eye.samples", "2")], set].concat();
-        let method = methods::find("maps").unwrap();
+        let method = methods::find(method).unwrap();
         let job = job(scene, &settings, "region", SIZE);
         budget.chain(&self.gpu, &job, method, &self.store, &mut |_| ControlFlow::Continue(())).unwrap()
     }
@@ -151,6 +155,21 @@ fn every_setting_of_light_and_method_has_its_step() {
         assert_eq!(method.chain().first().map(|link| link.shown), Some(Shown::AllPaths));
         assert_eq!(method.chain().last().map(|link| link.shown), Some(Shown::AsAsked));
     }
+}
+
+/// Two steps, since no photon is shot; and the scale that fits best, which makes the whole no worse.
+#[test]
+fn a_picture_right_up_to_a_scale_is_fitted() {
+    let bench = Bench::new();
+    let chain = bench.chain_of("waves", "water", &[], &BUDGET);
+    assert_eq!(
+        chain.steps.iter().map(|step| step.name.as_str()).collect::<Vec<_>>(),
+        ["path class", "light from straight above alone"]
+    );
+    let fitted = chain.fitted.expect("the picture is right only up to a scale");
+    assert!(fitted.scale > 0.0 && fitted.relmse.value <= chain.whole.relmse.value, "{fitted:?}");
+    assert!(bench.chain("diffuse", &[], &BUDGET).fitted.is_none());
+    assert_quiet(&bench.gpu);
 }
 
 #[test]

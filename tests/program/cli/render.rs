@@ -35,7 +35,7 @@ fn four_files_appear() {
     let (_folder, out, ran) = rendered("glass-sphere --method maps");
     assert_eq!(names(&out), ["image.exr", "image.png", "result.json", "timings.csv"]);
     assert!(ran.err.contains("device: "), "the device is named on stderr: {}", ran.err);
-    assert!(ran.out.contains("maps/gather") && ran.out.contains("exposure 0.5 EV"), "{}", ran.out);
+    assert!(ran.out.contains("maps/cells") && ran.out.contains("exposure 0.5 EV"), "{}", ran.out);
 }
 
 #[test]
@@ -80,7 +80,8 @@ fn every_photon_and_every_watt_is_in_a_bucket() {
         let summed: f64 = flux.iter().filter(|(name, _)| *name != "emitted").map(|(_, w)| w.as_f64().unwrap()).sum();
         let emitted = energy["emitted_w"].as_f64().unwrap();
         assert!((summed / emitted - 1.0).abs() < FLUX, "{scene}: {summed} of {emitted} W");
-        let ratio = energy["deposited_w"].as_f64().unwrap() / energy["valid_w"].as_f64().unwrap();
+        let arrived = &energy["counted"]["arrived_w"]; // by cells
+        let ratio = energy["deposited_w"].as_f64().unwrap() / arrived.as_f64().unwrap();
         assert_same(&energy["ratio"], ratio);
     }
 }
@@ -194,7 +195,7 @@ fn every_format_reports_the_render_and_a_software_device_as_such() {
     let software = nephroid("devices --format json").ok().json()["devices"][0]["kind"] == "software";
     for format in ["table", "md", "csv", "json"] {
         let (_folder, out, ran) = rendered(&format!("null --format {format}"));
-        assert!(ran.out.contains("maps/gather"), "{format}: {}", ran.out);
+        assert!(ran.out.contains("maps/cells"), "{format}: {}", ran.out);
         let said = ran.out.contains("software device") || ran.out.contains(",software\n");
         match format {
             "json" => assert_eq!(ran.json(), result(&out)),
