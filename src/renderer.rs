@@ -110,7 +110,9 @@ impl Job {
 
     /// Samples a pixel along each axis: the value in force of `eye.samples`.
     pub fn eye_samples(&self) -> u32 {
-        eye::samples(&self.settings, &self.camera, self.size)
+        let own = self.providers.surface.and_then(|method| method.eye_samples(&self.settings));
+        let unsaid = self.settings.whole(&eye::SAMPLES) == 0;
+        own.filter(|_| unsaid).unwrap_or_else(|| eye::samples(&self.settings, &self.camera, self.size))
     }
 }
 

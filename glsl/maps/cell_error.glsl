@@ -1,10 +1,13 @@
 // What the light of a cell is wrong by where it is not traced finer, as the picture shows it, by estimate: the square of the
 // relative error, summed over texels. An error is relative to the cell's own light, and to what is dim. The including file has
-// `push.blur` and `push.dim`.
+// `push.blur`, in texels.
 #ifndef CELL_ERROR_GLSL
 #define CELL_ERROR_GLSL
 
 #include "maps/cells.glsl"
+
+// Of each view of emission: W of a cell, all bands, at most; W/m^2, all bands, of what is dim.
+layout(set = 0, binding = 35, scalar) readonly buffer Lights { vec2 data[]; } cells_lights;
 
 // Second differences of where light lands along both axes of the view and across them, texels for a step of a cell.
 struct Curve {
@@ -24,7 +27,7 @@ Curve curve_of(Cell c) {
 float dim_flux(int map, vec3 p) {
     View v = maps_views.data[map].view;
     float away = v.perspective != 0u ? dot(p - v.origin, v.forward) : 1.0;
-    return push.dim * abs((v.x1 - v.x0) * (v.y1 - v.y0)) * away * away / (float(push.side) * float(push.side));
+    return cells_lights.data[push.view].y * abs((v.x1 - v.x0) * (v.y1 - v.y0)) * away * away / (float(push.side) * float(push.side));
 }
 
 float across(vec2 a, vec2 b) {

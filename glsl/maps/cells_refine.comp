@@ -6,8 +6,8 @@
 // by an invocation, then the photons of each. With DEEPER what is still cut or torn is listed for the next level; without
 // it that goes as points.
 
-// texels; W/m^2; texels
-#define PUSH_MORE int side; float diameter; float dim; float blur;
+// texels
+#define PUSH_MORE int side; float diameter; float blur;
 #include "light/sample.glsl"
 #ifdef LAYERS
 #include "light/layers.glsl"

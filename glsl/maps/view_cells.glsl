@@ -12,8 +12,6 @@ layout(push_constant, scalar) uniform Push {
     uint light;
     uint view;
     ivec2 size;     // cells
-    float emitted;  // W of a cell, all bands, at most
-    float dim;      // W/m^2, all bands
     float blur;     // texels
 } push;
 

@@ -64,7 +64,7 @@ float flux_about(ivec2 corner, uint way) {
             most = max(most, flux.r + flux.g + flux.b);
         }
     }
-    return most > 0.0 ? most : push.emitted;
+    return most > 0.0 ? most : cells_lights.data[push.view].x;
 }
 
 // Of what lands in the map at a corner by a way that no photon of the centre went.

@@ -4,6 +4,7 @@ use super::{
     Picture,
     compare::Sides,
     compare_scene::{difference, paths},
+    picture::FILTERED,
 };
 use crate::image::Layer;
 
@@ -58,7 +59,8 @@ fn other_paths(image: &Picture, reference: &Picture) -> Option<String> {
 fn one_sample(image: &Picture, reference: &Picture) -> Option<String> {
     let [ours, theirs] = [image, reference].map(|p| p.about.get("settings.eye.samples").is_some_and(|k| k == "1"));
     let [width, height] = image.size();
-    (ours && !theirs && width.max(height) < FINE).then(|| {
+    let filtered = image.about.get("surface").is_some_and(|s| s == FILTERED);
+    (ours && !theirs && !filtered && width.max(height) < FINE).then(|| {
         let file = &image.file;
         format!(
             "{file}: one eye sample a pixel at {width}x{height} adds an error that is not the method's: render the \

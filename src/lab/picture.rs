@@ -11,6 +11,8 @@ use crate::{
 
 /// What a picture says of its slot `surface` where that is irradiance only up to a scale.
 pub(super) const RELATIVE: &str = "relative";
+/// What it says where one eye sample has the mean of a pixel.
+pub(super) const FILTERED: &str = "filtered";
 /// The camera that sees the region and nothing else.
 pub(super) const REGION: &str = "region";
 

@@ -4,7 +4,10 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use sysinfo::{CpuRefreshKind, RefreshKind, System};
 
-use super::{devices::DeviceRow, picture::RELATIVE};
+use super::{
+    devices::DeviceRow,
+    picture::{FILTERED, RELATIVE},
+};
 use crate::{
     gpu::DeviceInfo,
     image,
@@ -89,7 +92,7 @@ impl Provenance {
             e0: bare_irradiance(&scene),
             time_s: frame.time,
             seed: frame.seed,
-            surface: job.providers.is_relative(&job.settings).then_some(RELATIVE),
+            surface: surface(job),
             arguments,
         }
     }
@@ -130,6 +133,12 @@ impl SceneSource {
 /// Exposure of the PNG: the setting, else the scene's.
 pub fn exposure(settings: &Settings, scene: &Scene) -> f64 {
     settings.real(&eye::EXPOSURE).unwrap_or(scene.exposure)
+}
+
+/// What is to be known of the slot `surface`, if anything.
+fn surface(job: &Job) -> Option<&'static str> {
+    let filters = || job.providers.surface.is_some_and(|method| method.eye_samples(&job.settings).is_some());
+    if job.providers.is_relative(&job.settings) { Some(RELATIVE) } else { filters().then_some(FILTERED) }
 }
 
 /// Every setting: values as numbers where they are numbers; what the scene or the camera decides, as it decided.

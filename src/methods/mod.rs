@@ -152,6 +152,10 @@ pub trait Method: Sync {
     fn is_relative(&self, _: &Settings) -> bool {
         false
     }
+    /// Eye samples along an axis that a pixel has where nobody says: where, as set, one has the pixel's mean already.
+    fn eye_samples(&self, _: &Settings) -> Option<u32> {
+        None
+    }
     /// Its stages, which `plan` lists as left out where the scene cannot show what they make.
     fn stages(&self) -> &'static [&'static str];
     /// What its picture does not show well, and the remedy.

@@ -23,7 +23,8 @@ pub static SAMPLES: Whole = Whole {
     unit: "samples",
     default: 0,
     range: 0..=16,
-    doc: "k for k x k eye samples a pixel, box-filtered; 0: 1, and through `region` as many as make 1024 across, at most 8",
+    doc: "k for k x k eye samples a pixel, box-filtered; 0: 1, and through `region` as many as make 1024 across, at most 8, where the \
+          method does not filter pixels itself",
 };
 
 /// The camera whose pictures are judged: the truth is box-filtered, and so are they unless told otherwise.

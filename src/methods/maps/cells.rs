@@ -8,7 +8,7 @@
 
 use super::{
     Axes, Job, SPLAT_SIZE,
-    finer::{Finer, Judge},
+    finer::{self, Finer},
     sums::Fixed,
 };
 use crate::{
@@ -36,8 +36,6 @@ const TALLY_BYTES: u64 = 9 * 4;
 const GROUPS: u32 = 4096;
 /// Photons a sample that a work group's shared memory holds for 41 samples, of the 16 KiB that every device has.
 const LAYERS_MOST: u32 = 10;
-/// Bands of light.
-const BANDS: f32 = 3.0;
 /// Invocations along one side of the other work groups.
 const GROUP: u32 = 8;
 
@@ -63,8 +61,7 @@ pub struct Cells {
 struct CellsPush {
     map: LargePush,
     size: [i32; 2],
-    emitted: f32,
-    judge: Judge,
+    blur: f32,
 }
 
 /// Push constants of `glsl/maps/cells_large.comp`.
@@ -136,9 +133,8 @@ impl Cells {
         let emission = &job.emissions[view];
         let (side, diameter) = (self.side as i32, self.diameter);
         let map = LargePush { side, diameter, light: emission.lamp, view: view as u32 };
-        let judge = Judge::of(job, emission, self.side, diameter);
-        let emitted = BANDS * emission.most() as f32;
-        let push = CellsPush { map, size: emission.held().map(|n| n as i32), emitted, judge };
+        let blur = finer::blur(job, self.side, diameter);
+        let push = CellsPush { map, size: emission.held().map(|n| n as i32), blur };
         let groups = [job.photons.side.div_ceil(GROUP), job.photons.side.div_ceil(GROUP), 1];
         if let Some(finer) = &self.finer {
             let pass = job.photons.define(finer.weigh(job.plan.pass(&name_of("maps/cells.weigh"))));
@@ -155,7 +151,7 @@ impl Cells {
             finer.refine(
                 job,
                 view,
-                (side, diameter, judge),
+                (side, diameter, blur),
                 (&known, &|pass| self.give(fixed, pass).read("maps_views", self.views)),
                 name_of,
             );

@@ -50,6 +50,8 @@ pub struct Finer {
     lists: Vec<BufferId>,
     /// Of each view and level what its list holds.
     rows: BufferId,
+    /// What errors are held against.
+    lights: BufferId,
     most: u32,
 }
 
@@ -60,29 +62,22 @@ struct RefinePush {
     sample: SamplePush,
     side: i32,
     diameter: f32,
-    judge: Judge,
-}
-
-/// What an error is held against (`dim` and `blur` of `glsl/maps/cell_error.glsl`).
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Judge {
-    /// W/m², all bands.
-    dim: f32,
-    /// What the picture blurs, texels: a pixel of one that shows the whole map, or a splat where that is more.
     blur: f32,
 }
 
-impl Judge {
-    /// For a view of emission, and a map of so many texels a side with splats of a diameter.
-    pub fn of(job: &Job<'_>, emission: &Emission, side: u32, diameter: f32) -> Self {
-        const NEAREST: f64 = 1e-3; // m: a light in a receiver's middle
-        let middle = job.receivers.first().map(|receiver| receiver.patch.center);
-        let apart = emission.position.zip(middle).map_or(1.0, |(a, b)| a.distance(b).max(NEAREST));
-        let dim = (DIM * BANDS * emission.brightest() / (apart * apart)) as f32;
-        let pixels = job.size[0].min(job.size[1]).max(1);
-        Self { dim, blur: (side as f32 / pixels as f32).max(diameter) }
-    }
+/// What an error is held against, of a view of emission (`Lights` of `glsl/maps/cell_error.glsl`): W of a cell at most, and W/m² of
+/// what is dim, all bands. Both change as a scene moves, so that a buffer has them.
+fn held_against(job: &Job<'_>, emission: &Emission) -> [f32; 2] {
+    const NEAREST: f64 = 1e-3; // m: a light in a receiver's middle
+    let middle = job.receivers.first().map(|receiver| receiver.patch.center);
+    let apart = emission.position.zip(middle).map_or(1.0, |(a, b)| a.distance(b).max(NEAREST));
+    [BANDS * emission.most(), DIM * BANDS * emission.brightest() / (apart * apart)].map(|held| held as f32)
+}
+
+/// What the picture blurs, texels of a map of so many a side: a pixel of one that shows the whole map, or a splat where that is more.
+pub fn blur(job: &Job<'_>, side: u32, diameter: f32) -> f32 {
+    let pixels = job.size[0].min(job.size[1]).max(1);
+    (side as f32 / pixels as f32).max(diameter)
 }
 
 /// Levels in force.
@@ -122,7 +117,9 @@ impl Finer {
             row.repeat(levels as usize)
         };
         let rows = job.plan.upload_once("maps/cells.rows", &job.emissions.iter().flat_map(row).collect::<Vec<_>>());
-        Some(Self { lists, rows, most })
+        let lights: Vec<_> = job.emissions.iter().map(|emission| held_against(job, emission)).collect();
+        let lights = job.plan.upload("maps/cells.lights", &lights);
+        Some(Self { lists, rows, lights, most })
     }
 
     /// Gives a pass the list of a level to fill.
@@ -137,7 +134,7 @@ impl Finer {
 
     /// Gives the pass that weighs the cells of the view's own grid what it counts them in.
     pub fn weigh<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        self.rows(pass)
+        self.rows(pass).read("cells_lights", self.lights)
     }
 
     /// Makes a pass the one that says which of them pay.
@@ -147,7 +144,7 @@ impl Finer {
 
     /// Gives the pass over the view's own grid the first list.
     pub fn begin<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        self.fill(pass.define("REFINED", 1), 0)
+        self.fill(pass.define("REFINED", 1).read("cells_lights", self.lights), 0)
     }
 
     /// Adds a pass a level. The first has the photons of the view's own grid, `known`; `give` gives each what all passes over cells
@@ -156,7 +153,7 @@ impl Finer {
         &self,
         job: &mut Job<'_>,
         view: usize,
-        (side, diameter, judge): (i32, f32, Judge),
+        (side, diameter, blur): (i32, f32, f32),
         (known, give): (&[(&'static str, Resource)], Give<'_>),
         name_of: &dyn Fn(&str) -> String,
     ) {
@@ -169,10 +166,14 @@ impl Finer {
             emission: &job.emissions[view],
             index: view,
         };
-        let push = RefinePush { sample: tracing.push(), side, diameter, judge };
+        let push = RefinePush { sample: tracing.push(), side, diameter, blur };
         for (level, &list) in self.lists.iter().enumerate() {
             let name = name_of(&format!("maps/cells.refine{}", numbered(level as u32)));
-            let pass = tracing.give(give(job.plan.pass(&name))).read("cells_list", list).push(&push);
+            let pass = tracing
+                .give(give(job.plan.pass(&name)))
+                .read("cells_list", list)
+                .read("cells_lights", self.lights)
+                .push(&push);
             let pass = if level == 0 { pass.with(known.iter().copied()) } else { pass };
             let pass = pass.define("CELLS_LEVEL", level).define("CELLS_MOST", self.most);
             let pass = match self.lists.get(level + 1) {

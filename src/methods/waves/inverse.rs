@@ -146,7 +146,7 @@ pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
     if let Some(name) = water::waters(scene).nth(1).map(|other| &scene.objects[other].name) {
         all.push(format!("waves know one water; '{name}' stands in the way of its light and makes none"));
     }
-    if !(1..=SAMPLES_MOST).contains(&settings.whole(&eye::SAMPLES)) {
+    if settings.whole(&eye::SAMPLES) > SAMPLES_MOST {
         all.push(format!(
             "waves.variant=inverse has the mean of a pixel from one eye sample; set eye.samples to 1 (at most {SAMPLES_MOST}): some \
              devices end what a pixel takes too long for, and lose its light"

@@ -158,6 +158,10 @@ impl Method for Waves {
         SETTINGS
     }
 
+    fn eye_samples(&self, settings: &Settings) -> Option<u32> {
+        (settings.choice(&VARIANT) == "inverse").then_some(1)
+    }
+
     fn is_relative(&self, settings: &Settings) -> bool {
         settings.choice(&VARIANT) != "inverse"
     }
