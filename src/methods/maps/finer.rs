@@ -177,7 +177,7 @@ impl Finer {
             let pass = if level == 0 { pass.with(known.iter().copied()) } else { pass };
             let pass = pass.define("CELLS_LEVEL", level).define("CELLS_MOST", self.most);
             let pass = match self.lists.get(level + 1) {
-                Some(_) => self.fill(pass.define("DEEPER", 1), level + 1),
+                Some(_) => self.fill(pass.define("DEEPER", 1).read("cells_lights", self.lights), level + 1),
                 None => self.rows(pass),
             };
             let row = (view * self.lists.len() + level) as u32 * (ROW / Row::WORDS as u32);
