@@ -169,11 +169,7 @@ impl Finer {
         let push = RefinePush { sample: tracing.push(), side, diameter, blur };
         for (level, &list) in self.lists.iter().enumerate() {
             let name = name_of(&format!("maps/cells.refine{}", numbered(level as u32)));
-            let pass = tracing
-                .give(give(job.plan.pass(&name)))
-                .read("cells_list", list)
-                .read("cells_lights", self.lights)
-                .push(&push);
+            let pass = tracing.give(give(job.plan.pass(&name))).read("cells_list", list).push(&push);
             let pass = if level == 0 { pass.with(known.iter().copied()) } else { pass };
             let pass = pass.define("CELLS_LEVEL", level).define("CELLS_MOST", self.most);
             let pass = match self.lists.get(level + 1) {
