@@ -92,7 +92,8 @@ fn sun(degrees: f64) -> String {
     )
 }
 
-const FEW: [(&str, &str); 3] = [("light.side", "256"), ("maps.side", "128"), ("light.area_samples", "4")];
+const FEW: [(&str, &str); 4] =
+    [("maps.splat", "fixed"), ("light.side", "256"), ("maps.side", "128"), ("light.area_samples", "4")];
 /// Of the flux of a texel, by which a photon's place on the map's grid moves a splat when light turns by a millionth.
 const GRAIN: f64 = 1e-3;
 
