@@ -74,7 +74,7 @@ fn memory_is_a_tile_s() {
     let most = tiled.images.iter().filter(|image| image.name.starts_with("light/photons")).map(|image| image.extent);
     assert_eq!(most.max(), Some([1024; 2]));
     let traced = |name: &str| tiled.passes.iter().filter(|pass| pass.name.split(':').next() == Some(name)).count();
-    assert_eq!([traced("light/photons"), traced("maps/cells"), traced("light/front")], [64, 64, 128]);
+    assert_eq!([traced("light/photons"), traced("maps/gather"), traced("light/front")], [64, 64, 128]);
     assert_eq!(traced("light/back"), 2, "a view's tiles share what is behind them, in the frame and in the account");
     assert!(tiled.images.iter().all(|image| image.extent[0] <= 4096), "every device has such images");
     let refused = plan("64").map(drop).unwrap_err().to_string();

@@ -19,7 +19,7 @@ const SUMS: f64 = 1e-5;
 /// where pixels and texels beat, and the map's margin, which the picture does not show.
 const PICTURED: f64 = 0.005;
 
-const SIDES: [(&str, &str); 2] = [("light.side", "128"), ("maps.side", "256")];
+const SIDES: [(&str, &str); 2] = [("light.side", "256"), ("maps.side", "256")];
 
 /// Counts are exact; fluxes to rounding; deposited is what was valid, and nothing where nothing was.
 fn judge(name: &str, class: PathClass, picture: &Picture) {

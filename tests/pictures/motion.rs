@@ -200,7 +200,7 @@ fn a_lamp_that_enters_the_glass_is_planned_again() {
     let outside = frame_at(&mut renderer, 0.0);
     let stages = renderer.stages().len();
     let inside = frame_at(&mut renderer, 1.0);
-    assert_eq!((renderer.moved().replans, renderer.stages().len() - stages), (1, 35), "six views for one");
+    assert_eq!((renderer.moved().replans, renderer.stages().len() - stages), (1, 10), "six views for one");
     assert!(inside.get("irradiance.caustic").unwrap().data().iter().any(|e| *e > 0.0));
     assert_eq!(frame_at(&mut renderer, 0.0), outside);
     assert_eq!(renderer.moved().replans, 2);
