@@ -6,13 +6,13 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    accel::SceneArrays,
+    Work,
     lamps::Lamps,
     scene::{SceneBuffers, visible_draws},
 };
 use crate::{
     gpu::{Blend, BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource, Topology},
-    scene::{Camera, CameraKind, Scene},
+    scene::{Camera, CameraKind},
     settings::{Real, Setting, Settings, Whole},
     view::{Extent, View, ViewData},
 };
@@ -178,38 +178,12 @@ struct Eye<'a> {
     size: [u32; 2],
 }
 
-/// Everything the eye needs to know.
-pub struct EyeScene<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
-    /// Its arrays.
-    pub arrays: &'a SceneArrays,
-    /// Its buffers.
-    pub buffers: &'a SceneBuffers,
-    /// Its lights.
-    pub lamps: &'a Lamps,
-    /// The buffer of [`FrameData`].
-    pub frame: BufferId,
-    /// The camera.
-    pub camera: &'a Camera,
-    /// Pixels.
-    pub size: [u32; 2],
-    /// Samples a pixel along each axis (see [`samples`]).
-    pub samples: u32,
-}
-
 /// Adds the eye's passes.
-pub fn passes(
-    plan: &mut Plan,
-    from: &EyeScene<'_>,
-    settings: &Settings,
-    surface: Option<&SurfaceProvider>,
-) -> EyeLayers {
-    let image = |plan: &mut Plan, name: &str| plan.image(name, from.size, Format::Rgba32f, Lifetime::Frame);
-    let gbuffer = gbuffer(plan, from);
-    let push = EyePush { size: from.size.map(|s| s as i32), samples: from.samples as i32 };
-    let mut eye =
-        Eye { plan, buffers: from.buffers, lamps: from.lamps, frame: from.frame, gbuffer, push, size: from.size };
+pub fn passes(work: &mut Work<'_>, lamps: &Lamps, surface: Option<&SurfaceProvider>) -> EyeLayers {
+    let gbuffer = gbuffer(work);
+    let push = EyePush { size: work.size.map(|s| s as i32), samples: work.samples as i32 };
+    let (buffers, frame, size) = (work.buffers, work.frame, work.size);
+    let mut eye = Eye { plan: &mut *work.plan, buffers, lamps, frame, gbuffer, push, size };
     let (irradiance_direct, direct) = eye.direct();
     let (irradiance_caustic, caustic) = match surface {
         Some(provider) => {
@@ -218,19 +192,19 @@ pub fn passes(
         }
         None => (None, None),
     };
-    let draws = visible_draws(from.scene, from.camera, from.arrays);
+    let draws = visible_draws(work.scene, work.camera, work.arrays);
     let sees_specular = draws.iter().any(|d| {
-        let object = from.arrays.instances[d.first_instance as usize].object as usize;
-        from.scene.materials[from.scene.objects[object].material].is_specular()
+        let object = work.arrays.instances[d.first_instance as usize].object as usize;
+        work.scene.materials[work.scene.objects[object].material].is_specular()
     });
     if sees_specular {
-        eye.trace(settings.whole(&DEPTH), direct, caustic, surface);
-    } else if !from.scene.has_specular() {
+        eye.trace(work.settings.whole(&DEPTH), direct, caustic, surface);
+    } else if !work.scene.has_specular() {
         eye.plan.leave_out("eye/trace", "nothing in the scene is specular");
     } else {
         eye.plan.leave_out("eye/trace", "the camera sees no specular object");
     }
-    let radiance = image(eye.plan, "eye/radiance");
+    let radiance = eye.target("eye/radiance");
     let compose = eye.plan.pass("eye/compose").fetch("layer_direct", direct);
     let compose = match caustic {
         Some(caustic) => compose.fetch("layer_caustic", caustic).define("CAUSTIC", 1),
@@ -241,14 +215,14 @@ pub fn passes(
 }
 
 /// Push constants of `glsl/eye/gbuffer.frag`.
-fn gbuffer(plan: &mut Plan, from: &EyeScene<'_>) -> ImageId {
-    let extent = from.size.map(|s| s.saturating_mul(from.samples));
-    let seen = plan.image("eye/gbuffer", extent, Format::Rgba32u, Lifetime::Frame);
-    let depth = plan.image("eye/depth", extent, Format::Depth32f, Lifetime::Frame);
-    let draws = visible_draws(from.scene, from.camera, from.arrays);
-    let pass = plan.pass("eye/gbuffer").provide("raster_view.glsl", "eye/raster_view.glsl");
-    let mut pass = from.buffers.vertices(pass).read("frame", from.frame);
-    if from.buffers.is_cast() {
+fn gbuffer(work: &mut Work<'_>) -> ImageId {
+    let extent = work.size.map(|s| s.saturating_mul(work.samples));
+    let seen = work.plan.image("eye/gbuffer", extent, Format::Rgba32u, Lifetime::Frame);
+    let depth = work.plan.image("eye/depth", extent, Format::Depth32f, Lifetime::Frame);
+    let draws = visible_draws(work.scene, work.camera, work.arrays);
+    let pass = work.plan.pass("eye/gbuffer").provide("raster_view.glsl", "eye/raster_view.glsl");
+    let mut pass = work.buffers.vertices(pass).read("frame", work.frame);
+    if work.buffers.is_cast() {
         pass = pass.push(&extent.map(|s| s as i32)); // rays go through the pixels
     }
     pass.target(seen, 0, Some([0.0; 4]), Blend::Replace).depth(depth, true).draw(

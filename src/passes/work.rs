@@ -1,4 +1,4 @@
-//! What a method's passes are planned with.
+//! What the passes of methods and of the eye are planned with.
 
 use super::{accel::SceneArrays, extents::Receiver, scene::SceneBuffers};
 use crate::{

@@ -10,7 +10,7 @@ use crate::{
         PlanError, Work,
         accel::{SceneArrays, Trees},
         extents,
-        eye::{self, EyeLayers, EyeScene, FrameData},
+        eye::{self, EyeLayers, FrameData},
         lamps::Lamps,
         light,
         scene::SceneBuffers,
@@ -114,9 +114,7 @@ pub(super) fn plan_with(job: &Job, trees: &mut Trees) -> Result<Planned, RenderE
         everything: &everything,
     };
     let provided = method_passes(&job.providers, &mut work)?;
-    let from =
-        EyeScene { scene, arrays: &arrays, buffers: &buffers, lamps: &lamps, frame, camera, size: job.size, samples };
-    let layers = eye::passes(&mut plan, &from, settings, provided.surface.as_ref());
+    let layers = eye::passes(&mut work, &lamps, provided.surface.as_ref());
     Ok(Planned {
         plan,
         frame,

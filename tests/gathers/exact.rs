@@ -80,7 +80,7 @@ fn a_cluster_has_one_receiver() {
         let set = [&[("light.side", "130"), ("maps.side", "32")], set].concat();
         layers(&picture(&gpu, &job_of(scene.clone(), &set, "main", [32, 32])))
     };
-    let (plain, merged) = (of(&[("maps.splat", "fixed")]), of(&[("maps.merge", "exact"), ("maps.spread", "8")]));
+    let (plain, merged) = (of(&[]), of(&[("maps.merge", "exact"), ("maps.spread", "8")]));
     println!("{plain:?} W, {merged:?} W");
     assert!(plain.len() > 1 && plain.iter().all(|&w| w > 0.0), "both get light: {plain:?}");
     let off = plain.iter().zip(&merged).map(|(a, b)| (b / a - 1.0).abs());
@@ -106,8 +106,9 @@ fn one_photon_and_a_focus_of_all() {
     assert!(points <= 256, "{points} splats of {} photons", all.account.counts[1]);
 }
 
-/// Blended against summed in fixed point: float32 sums of some hundred addends, whose order is the device's (1.2e-6 on an H100).
-const ORDER: f64 = 3e-6;
+/// Blended against summed in fixed point: of n addends a float32 sum errs by n 2⁻²⁵, in an order that is the device's; here some hundred
+/// (1.2e-6 was seen on an H100).
+const ORDER: f64 = 100.0 / (1 << 25) as f64;
 
 #[test]
 fn large_splats_are_drawn_as_they_are_summed() {

@@ -12,9 +12,10 @@ const ODD: &str = "24";
 /// Of the mean: on a silhouette a rasteriser takes texels of a tile and of its view by other roundings; measured 5e-9,
 /// a texel is 3e-4.
 const COVERAGE: f64 = 1e-3;
-/// Of the mean: photons at a tile's end know no neighbour beyond, clusters end there (measured 0.015), and which cells pay for being
-/// traced finer is found tile by tile (9.5e-4).
+/// Of the mean: photons at a tile's end know no neighbour beyond, and clusters end there; measured 0.015.
 const SEAMS: f64 = 0.03;
+/// Of the mean: which cells pay for being traced finer is found tile by tile; measured 9.5e-4.
+const CHOSEN: f64 = 1.5e-3;
 
 /// How far the picture of tiles is from the whole one's, of its mean.
 fn apart(gpu: &Gpu, scene: &str, set: &[(&str, &str)], tile: &str) -> f64 {
@@ -43,11 +44,7 @@ fn tiles_sum_to_the_picture_of_one_bit_by_bit() {
         ("room", &[], HALF), // three lights, several photons a sample
         ("bunny", &[("maps.gather", "cells"), ("maps.adapt", "0")], ODD),
         ("glass-sphere", &[("light.view", "shared"), ("light.tracer", "march")], ODD),
-        (
-            "glass-sphere",
-            &[("maps.gather", "fixed"), ("scene.lights.sun.angular_diameter", "5.0"), ("light.area_samples", "4")],
-            "20",
-        ),
+        ("glass-sphere", &[("scene.lights.sun.angular_diameter", "5.0"), ("light.area_samples", "4")], "20"),
     ];
     for (scene, set, tile) in cases {
         assert_eq!(apart(&gpu, scene, set, tile), 0.0, "{scene} {set:?} tile {tile}");
@@ -61,7 +58,7 @@ fn where_a_tile_shows_it_is_by_little() {
     let levels = [("maps.gather", "varying-multires"), ("maps.top", "4")];
     assert!(apart(&gpu, "bunny", &inside, ODD) <= COVERAGE);
     assert!(apart(&gpu, "bunny", &levels, HALF) <= SEAMS);
-    assert!(apart(&gpu, "bunny", &[("maps.gather", "cells")], ODD) <= SEAMS);
+    assert!(apart(&gpu, "bunny", &[("maps.gather", "cells")], ODD) <= CHOSEN);
 }
 
 #[test]

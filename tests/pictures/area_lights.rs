@@ -92,8 +92,7 @@ fn sun(degrees: f64) -> String {
     )
 }
 
-const FEW: [(&str, &str); 4] =
-    [("maps.splat", "fixed"), ("light.side", "256"), ("maps.side", "128"), ("light.area_samples", "4")];
+const FEW: [(&str, &str); 3] = [("light.side", "256"), ("maps.side", "128"), ("light.area_samples", "4")];
 /// Of the flux of a texel, by which a photon's place on the map's grid moves a splat when light turns by a millionth.
 const GRAIN: f64 = 1e-3;
 
@@ -124,13 +123,7 @@ const EVEN: f64 = 0.015;
 #[test]
 fn a_sun_over_flat_water_is_even() {
     let scene = under("flat-water", &sun(10.0));
-    let set = [
-        ("maps.splat", "fixed"),
-        ("light.side", "1024"),
-        ("maps.side", "128"),
-        ("light.area_samples", "16"),
-        ("eye.samples", "2"),
-    ];
+    let set = [("light.side", "1024"), ("maps.side", "128"), ("light.area_samples", "16"), ("eye.samples", "2")];
     let found = of(&gpu(), &scene, &set);
     all_ended(&found.account, scene.paths);
     let sum = found.account.flux_w[1..].iter().sum::<f64>() + found.account.other_paths_w;

@@ -121,8 +121,7 @@ fn judge_account(name: &str, picture: &Picture, truth: &SphereCaustic, floor_hal
     assert!((ours / landed - 1.0).abs() <= TOTAL, "{name}: {ours} W on the floor against {landed} W");
 }
 
-const SPHERE: [(&str, &str); 4] =
-    [("maps.splat", "fixed"), ("light.side", "1024"), ("maps.side", "512"), ("eye.samples", "2")];
+const SPHERE: [(&str, &str); 3] = [("light.side", "1024"), ("maps.side", "512"), ("eye.samples", "2")];
 /// Half an edge of the floor of `glass-sphere`, m.
 const FLOOR_HALF: f64 = 8.0;
 

@@ -15,8 +15,7 @@ use nephroid::{
 };
 
 const INDICES: [f64; 3] = [1.45, 1.5, 1.6];
-/// Which cells are traced finer is one choice for all bands.
-const SETTINGS: [(&str, &str); 3] = [("maps.splat", "fixed"), ("light.side", "128"), ("maps.side", "64")];
+const SETTINGS: [(&str, &str); 2] = [("light.side", "128"), ("maps.side", "64")];
 
 fn glass(ior: &str) -> Scene {
     scene("glass-sphere", &[("materials.glass.dielectric.ior", ior)])

@@ -72,8 +72,7 @@ fn a_far_lamp_is_the_sun() {
 }
 
 /// A lamp's views over all six faces of a cube, of more photons each: the object takes a part of them alone.
-const SPLIT: [(&str, &str); 4] =
-    [("maps.splat", "fixed"), ("light.side", "1024"), ("maps.side", "128"), ("eye.samples", "2")];
+const SPLIT: [(&str, &str); 3] = [("light.side", "1024"), ("maps.side", "128"), ("eye.samples", "2")];
 /// As in `null`: mean and 99th percentile of the pixels' errors off the shadow's edge, and the region's.
 const MEAN_ERROR: f64 = 0.005;
 const PERCENTILE_99: f64 = 0.02;

@@ -115,7 +115,7 @@ fn a_spot_over_flat_water() {
     let scene = under("flat-water", &spot("[0.1, 1.5, 0.0]", "[0, -1, 0]", 10.0, 25.0));
     let ((position, beam), region) = (beam(&scene), scene.region.clone());
     // Some twenty photons a texel: with five, their lattice beats against the map's by a percent.
-    let dense = [("maps.splat", "fixed"), ("light.side", "1024"), ("maps.side", "256")];
+    let dense = [("light.side", "1024"), ("maps.side", "256")];
     let found = picture(&gpu(), &job_of(scene, &dense, "region", [SIDE; 2]));
     let (mut total, mut off) = ([0.0; 2], Vec::new());
     let (pixels, brightest) =

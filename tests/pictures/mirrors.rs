@@ -35,7 +35,7 @@ const FOCUSED: f64 = 0.999;
 const SUPPORT: f64 = 3.0;
 
 fn ring() -> Picture {
-    let set = [("maps.splat", "fixed"), ("light.side", "1024"), ("maps.side", "512"), ("eye.samples", "2")];
+    let set = [("light.side", "1024"), ("maps.side", "512"), ("eye.samples", "2")];
     picture(&gpu(), &job_of(scene("ring", &[]), &set, "region", [PIXELS; 2]))
 }
 
@@ -141,13 +141,7 @@ const BLENDED: f64 = 1e-4;
 
 /// Share by which the map's flux is off, all of it in a few texels about the focus.
 fn off_in_the_focus(side: &str, traverse: &str) -> f64 {
-    let set = [
-        ("light.side", side),
-        ("maps.splat", "fixed"),
-        ("maps.side", "512"),
-        ("eye.samples", "1"),
-        ("maps.traverse", traverse),
-    ];
+    let set = [("light.side", side), ("maps.side", "512"), ("eye.samples", "1"), ("maps.traverse", traverse)];
     let ratio = picture(&gpu(), &job_of(scene("paraboloid", &[]), &set, "region", [16; 2])).energy.ratio;
     let off = ratio.expect("photons arrive") - 1.0;
     println!("{side}² photons, {traverse}: {off:+.2e}");

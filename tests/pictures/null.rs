@@ -32,8 +32,7 @@ const TOO_BRIGHT: f64 = 1.02;
 /// The picture's own direct light outside the shadow against the closed form: float32 positions and products.
 const DIRECT_ROUNDING: f64 = 2e-5;
 
-const SETTINGS: [(&str, &str); 4] =
-    [("maps.splat", "fixed"), ("light.side", "1024"), ("maps.side", "256"), ("eye.samples", "4")];
+const SETTINGS: [(&str, &str); 3] = [("light.side", "1024"), ("maps.side", "256"), ("eye.samples", "4")];
 
 /// A null scene: its one light, its ball, where errors are judged.
 struct Null<'a> {

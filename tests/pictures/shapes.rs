@@ -130,7 +130,7 @@ const STRIP: f64 = 0.01;
 #[test]
 fn below_a_wave_each_strip_has_its_light() {
     const PIXELS: u32 = pixels_of_map(512);
-    let set = [("maps.splat", "fixed"), ("light.side", "1024"), ("maps.side", "512"), ("eye.samples", "2")];
+    let set = [("light.side", "1024"), ("maps.side", "512"), ("eye.samples", "2")];
     let picture = picture(&gpu(), &job_of(scene("sine-water", &[]), &set, "region", [PIXELS; 2]));
     let water = SineWater::new(0.02, TAU / 0.5, 0.8, 1.33).unwrap();
     let (caustic, n) = (picture.mean("irradiance.caustic"), PIXELS as usize);

@@ -62,14 +62,14 @@ struct Binning {
 
 impl Binning {
     fn begin(job: &mut Job<'_>) -> Result<Self, PlanError> {
-        let view = eye::view(&job.scene.cameras[REGION], job.size, job.everything);
-        let pixels = pixels(job.size);
+        let view = eye::view(&job.work.scene.cameras[REGION], job.work.size, job.work.everything);
+        let pixels = pixels(job.work.size);
         let unit = light::flux_unit(job.emissions);
         Ok(Self {
-            size: job.size,
-            view: job.plan.upload("budget/view", &[view.data()]),
-            sums: job.plan.upload_once("budget/sums", &vec![0u32; WORDS * pixels]),
-            unit: job.plan.upload("budget/unit", &[unit.recip() as f32, unit as f32]),
+            size: job.work.size,
+            view: job.work.plan.upload("budget/view", &[view.data()]),
+            sums: job.work.plan.upload_once("budget/sums", &vec![0u32; WORDS * pixels]),
+            unit: job.work.plan.upload("budget/unit", &[unit.recip() as f32, unit as f32]),
         })
     }
 }
@@ -81,9 +81,9 @@ impl Taker for Binning {
 
     fn gather(&mut self, job: &mut Job<'_>, _view: usize, name_of: &dyn Fn(&str) -> String) {
         let groups = job.photons.side.div_ceil(GROUP);
-        let receiver = job.scene.region.receiver as u32;
+        let receiver = job.work.scene.region.receiver as u32;
         let push = BinPush { size: self.size.map(|n| n as i32), receiver };
-        let pass = job.photons.define(job.plan.pass(&name_of("budget/bin")));
+        let pass = job.photons.define(job.work.plan.pass(&name_of("budget/bin")));
         let pass = pass.with(job.photons.fetch(&[Column::Hit, Column::Flux])).read("budget_view", self.view);
         let pass = pass.read("flux_unit", self.unit).write("flux_sums", self.sums).push(&push);
         pass.dispatch("budget/bin.comp", [groups, groups, job.photons.layers()], GROUP * GROUP);

@@ -79,7 +79,7 @@ impl Keeping {
                 remedy: "set light.area_samples=1, or compare each light in a scene of its own".into(),
             });
         }
-        let image = |name| job.plan.image_array(name, [side; 2], layers, Format::Rgba32f, Lifetime::Frame);
+        let image = |name| job.work.plan.image_array(name, [side; 2], layers, Format::Rgba32f, Lifetime::Frame);
         Ok(Self { images: KEPT.map(|(_, name, _)| name).map(image) })
     }
 }
@@ -91,7 +91,8 @@ impl Taker for Keeping {
 
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
         let groups = job.photons.side.div_ceil(GROUP);
-        let pass = job.plan.pass(&name_of("tracers/keep")).with(job.photons.fetch(&KEPT.map(|(column, ..)| column)));
+        let pass =
+            job.work.plan.pass(&name_of("tracers/keep")).with(job.photons.fetch(&KEPT.map(|(column, ..)| column)));
         let stored = KEPT.iter().zip(self.images).fold(pass, |pass, ((_, _, name), image)| pass.store(name, image));
         stored.push(&(view as i32)).dispatch("tracers/keep.comp", [groups, groups, 1], GROUP * GROUP);
     }

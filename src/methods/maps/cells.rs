@@ -113,23 +113,23 @@ impl Cells {
                 remedy: format!("set light.layers={LAYERS_MOST} or less, or maps.splat=fixed"),
             });
         }
-        let corners = Corners::plan(job.plan, job.bench, &[Column::Hit, Column::Way])?;
+        let corners = Corners::plan(job.work.plan, job.bench, &[Column::Hit, Column::Way])?;
         let count = job.emissions.len();
         let cells = u64::from(job.photons.side).pow(2);
-        let counts = job.plan.upload_once("maps/cells.counts", &vec![0u32; count]);
+        let counts = job.work.plan.upload_once("maps/cells.counts", &vec![0u32; count]);
         let places = (LARGE_EACH * cells * u64::from(job.photons.layers())).min(LARGE_MOST);
-        let large = job.plan.buffer("maps/cells.large", places * LARGE_BYTES, Lifetime::Frame);
+        let large = job.work.plan.buffer("maps/cells.large", places * LARGE_BYTES, Lifetime::Frame);
         let finer = Finer::plan(job);
         let each = |[x, y]: [u32; 2]| u64::from(x) * u64::from(y) + u64::from(x + 1) * u64::from(y + 1);
         let samples = job.emissions.iter().map(|emission| each(emission.held())).sum();
-        let buffer = job.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);
-        let diameter = job.settings.whole(&SPLAT_SIZE) as f32;
+        let buffer = job.work.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);
+        let diameter = job.work.settings.whole(&SPLAT_SIZE) as f32;
         Ok(Some(Self { corners, counts, large, finer, views, side, diameter, tally: Tally { buffer, samples } }))
     }
 
     /// Adds the cells of one view to the sums.
     pub fn gather(&self, job: &mut Job<'_>, fixed: &Fixed, view: usize, name_of: &dyn Fn(&str) -> String) {
-        self.corners.trace(job.plan, job.bench, view);
+        self.corners.trace(job.work.plan, job.bench, view);
         let emission = &job.emissions[view];
         let (side, diameter) = (self.side as i32, self.diameter);
         let map = LargePush { side, diameter, light: emission.lamp, view: view as u32 };
@@ -137,12 +137,12 @@ impl Cells {
         let push = CellsPush { map, size: emission.held().map(|n| n as i32), blur };
         let groups = [job.photons.side.div_ceil(GROUP), job.photons.side.div_ceil(GROUP), 1];
         if let Some(finer) = &self.finer {
-            let pass = job.photons.define(finer.weigh(job.plan.pass(&name_of("maps/cells.weigh"))));
+            let pass = job.photons.define(finer.weigh(job.work.plan.pass(&name_of("maps/cells.weigh"))));
             let pass = pass.with(self.photons(job.photons, COLUMNS, emission.side)).read("maps_views", self.views);
             pass.push(&push).dispatch("maps/cells_weigh.comp", groups, GROUP * GROUP);
-            finer.pay(job.plan.pass(&name_of("maps/cells.pay")), view);
+            finer.pay(job.work.plan.pass(&name_of("maps/cells.pay")), view);
         }
-        let pass = job.photons.define(self.give(fixed, job.plan.pass(&name_of("maps/cells"))));
+        let pass = job.photons.define(self.give(fixed, job.work.plan.pass(&name_of("maps/cells"))));
         let pass = pass.with(self.photons(job.photons, COLUMNS, emission.side)).read("maps_views", self.views);
         let pass = self.finer.iter().fold(pass, |pass, finer| finer.begin(pass));
         pass.push(&push).dispatch("maps/cells.comp", groups, GROUP * GROUP);
@@ -156,7 +156,7 @@ impl Cells {
                 name_of,
             );
         }
-        let pass = self.give(fixed, job.plan.pass(&name_of("maps/cells.large")));
+        let pass = self.give(fixed, job.work.plan.pass(&name_of("maps/cells.large")));
         pass.push(&map).dispatch("maps/cells_large.comp", [GROUPS, 1, 1], GROUP * GROUP);
     }
 
@@ -176,7 +176,7 @@ impl Cells {
     /// Adds the pass that reads what all views' cells brought, after the last of them.
     pub fn tally(&self, job: &mut Job<'_>, fixed: &Fixed, layers: u32) {
         let views = job.emissions.len() as u32;
-        let pass = fixed.resolving(job.plan.pass("maps/cells.tally")).write("cells_tally", self.tally.buffer);
+        let pass = fixed.resolving(job.work.plan.pass("maps/cells.tally")).write("cells_tally", self.tally.buffer);
         let pass = pass.write("cells_counts", self.counts);
         let pass = self.finer.iter().fold(pass, |pass, finer| finer.count(pass));
         let first = self.side * self.side * layers;

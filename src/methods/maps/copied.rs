@@ -35,16 +35,16 @@ pub struct Vertices {
 impl Vertices {
     /// The buffers, which all views share; `None` where nothing is copied.
     pub fn plan(job: &mut Job<'_>) -> Option<Self> {
-        if Axes::asked(job.settings).traverse != "copy" {
+        if Axes::asked(job.work.settings).traverse != "copy" {
             return None;
         }
-        let (format, converts) = match job.settings.choice(&COPY) {
+        let (format, converts) = match job.work.settings.choice(&COPY) {
             "16-16" => (Format::Rgba16f, false),
             "16-32" => (Format::Rgba32f, true),
             _ => (Format::Rgba32f, false),
         };
         let bytes = u64::from(job.photons.side).pow(2) * u64::from(job.photons.layers()) * format.bytes();
-        let mut buffer = |name| job.plan.buffer(name, bytes, Lifetime::Frame);
+        let mut buffer = |name| job.work.plan.buffer(name, bytes, Lifetime::Frame);
         Some(Self { hit: buffer("maps/vertices.hit"), flux: buffer("maps/vertices.flux"), format, converts })
     }
 
@@ -53,7 +53,7 @@ impl Vertices {
         let pairs = [(Column::Hit, self.hit), (Column::Flux, self.flux)];
         let images = pairs.into_iter().filter_map(|(column, to)| Some((job.photons.column(column)?, to)));
         let copies: Vec<_> = images.collect();
-        let pass = job.plan.pass(name);
+        let pass = job.work.plan.pass(name);
         if !self.converts {
             return pass.copy(copies);
         }

@@ -69,14 +69,14 @@ struct RefinePush {
 /// what is dim, all bands. Both change as a scene moves, so that a buffer has them.
 fn held_against(job: &Job<'_>, emission: &Emission) -> [f32; 2] {
     const NEAREST: f64 = 1e-3; // m: a light in a receiver's middle
-    let middle = job.receivers.first().map(|receiver| receiver.patch.center);
+    let middle = job.work.receivers.first().map(|receiver| receiver.patch.center);
     let apart = emission.position.zip(middle).map_or(1.0, |(a, b)| a.distance(b).max(NEAREST));
     [BANDS * emission.most(), DIM * BANDS * emission.brightest() / (apart * apart)].map(|held| held as f32)
 }
 
 /// What the picture blurs, texels of a map of so many a side: a pixel of one that shows the whole map, or a splat where that is more.
 pub fn blur(job: &Job<'_>, side: u32, diameter: f32) -> f32 {
-    let pixels = job.size[0].min(job.size[1]).max(1);
+    let pixels = job.work.size[0].min(job.work.size[1]).max(1);
     (side as f32 / pixels as f32).max(diameter)
 }
 
@@ -91,23 +91,23 @@ type Give<'a> = &'a dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>;
 impl Finer {
     /// Adds the lists; `None` where no cell is traced finer.
     pub fn plan(job: &mut Job<'_>) -> Option<Self> {
-        let levels = levels(job.settings);
+        let levels = levels(job.work.settings);
         if levels == 0 {
-            let reason = match job.settings.choice(&TRACER) {
+            let reason = match job.work.settings.choice(&TRACER) {
                 "bvh" => "maps.adapt = 0: cells cut by an edge go as points",
                 _ => {
                     "the tracer's images show no more than the centres of their texels: cells cut by an edge go as points"
                 }
             };
-            job.plan.leave_out("maps/cells.refine", reason);
+            job.work.plan.leave_out("maps/cells.refine", reason);
             return None;
         }
-        let most = job.settings.whole(&MOST);
+        let most = job.work.settings.whole(&MOST);
         let mut cells = u64::from(job.photons.side).pow(2);
         let mut lists = Vec::new();
         for level in 0..levels {
             let name = format!("maps/cells.list{}", numbered(level));
-            lists.push(job.plan.buffer(&name, CELL_BYTES * cells, Lifetime::Frame));
+            lists.push(job.work.plan.buffer(&name, CELL_BYTES * cells, Lifetime::Frame));
             cells = SMALLER * cells.min(most.into());
         }
         let row = |emission: &Emission| {
@@ -116,9 +116,10 @@ impl Finer {
             (row[1], row[2], row[RAYS]) = (1, 1, x * y + (x + 1) * (y + 1));
             row.repeat(levels as usize)
         };
-        let rows = job.plan.upload_once("maps/cells.rows", &job.emissions.iter().flat_map(row).collect::<Vec<_>>());
+        let rows =
+            job.work.plan.upload_once("maps/cells.rows", &job.emissions.iter().flat_map(row).collect::<Vec<_>>());
         let lights: Vec<_> = job.emissions.iter().map(|emission| held_against(job, emission)).collect();
-        let lights = job.plan.upload("maps/cells.lights", &lights);
+        let lights = job.work.plan.upload("maps/cells.lights", &lights);
         Some(Self { lists, rows, lights, most })
     }
 
@@ -169,7 +170,7 @@ impl Finer {
         let push = RefinePush { sample: tracing.push(), side, diameter, blur };
         for (level, &list) in self.lists.iter().enumerate() {
             let name = name_of(&format!("maps/cells.refine{}", numbered(level as u32)));
-            let pass = tracing.give(give(job.plan.pass(&name))).read("cells_list", list).push(&push);
+            let pass = tracing.give(give(job.work.plan.pass(&name))).read("cells_list", list).push(&push);
             let pass = if level == 0 { pass.with(known.iter().copied()) } else { pass };
             let pass = pass.define("CELLS_LEVEL", level).define("CELLS_MOST", self.most);
             let pass = match self.lists.get(level + 1) {

@@ -42,8 +42,8 @@ impl Hierarchy {
             let points = u64::from(level_side(side, level - 1)).pow(2) * u64::from(pyramid.layers);
             let name = light::sized(&format!("maps/stream.{}", level % 2), sides, side);
             Stream {
-                vertices: job.plan.buffer(&name, points * POINT.bytes(), Lifetime::Frame),
-                counter: job.plan.buffer(&format!("{name}.bytes"), 4, Lifetime::Frame),
+                vertices: job.work.plan.buffer(&name, points * POINT.bytes(), Lifetime::Frame),
+                counter: job.work.plan.buffer(&format!("{name}.bytes"), 4, Lifetime::Frame),
             }
         };
         let odd = stream(1);
@@ -65,7 +65,7 @@ impl Hierarchy {
         let (converges, exact) = (merge.tests(level), merge == Merge::Exact);
         // Sides are asked of the photon image, and at the last level its photons.
         let columns: &[Column] = if converges { &[Column::Hit, Column::Flux] } else { &[Column::Hit] };
-        let pass = self.pyramid.define(job.photons.define(job.plan.pass(name))).with(job.photons.fetch(columns));
+        let pass = self.pyramid.define(job.photons.define(job.work.plan.pass(name))).with(job.photons.fetch(columns));
         let pass = if converges || exact || level == levels { pass.push(&push) } else { pass };
         let wanted: &[&str] = match merge {
             Merge::None => &["pyramid_valid"],
@@ -97,5 +97,5 @@ impl Hierarchy {
 pub fn too_few(job: &mut Job<'_>, left_out: &[&str], so: &str) {
     let side = job.photons.side;
     let reason = format!("{side} photons a side are no more than the topmost level's (maps.top): {so}");
-    left_out.iter().for_each(|name| job.plan.leave_out(name, reason.clone()));
+    left_out.iter().for_each(|name| job.work.plan.leave_out(name, reason.clone()));
 }

@@ -43,24 +43,24 @@ pub struct Large {
 
 /// Whether fixed splats are so large that all of them are drawn.
 pub fn all_drawn(job: &Job<'_>, axes: Axes<'_>) -> bool {
-    let size = job.settings.whole(&super::SPLAT_SIZE);
-    (axes.splat, axes.merge) == ("fixed", "none") && size >= job.settings.whole(&RASTER_FROM)
+    let size = job.work.settings.whole(&super::SPLAT_SIZE);
+    (axes.splat, axes.merge) == ("fixed", "none") && size >= job.work.settings.whole(&RASTER_FROM)
 }
 
 impl Large {
     /// Buffers, for each size of view; none where no splat can be large.
     pub fn plan(job: &mut Job<'_>, axes: Axes<'_>, fixed: &Option<Fixed>) -> Vec<Self> {
-        let from = job.settings.whole(&RASTER_FROM);
+        let from = job.work.settings.whole(&RASTER_FROM);
         if fixed.is_none() || !ROUND.contains(&axes.splat) || from > 255 {
             return Vec::new();
         }
-        let rows = job.plan.buffer("maps/large.rows", job.emissions.len() as u64 * Row::BYTES, Lifetime::Frame);
+        let rows = job.work.plan.buffer("maps/large.rows", job.emissions.len() as u64 * Row::BYTES, Lifetime::Frame);
         let (sides, layers) = (light::sides(job.emissions), job.photons.layers());
         let mut of = |&side: &u32| {
             // Of those that gather what is merged there are no more.
             let groups = side.div_ceil(MARKING_SIDE).pow(2) * layers;
             let mut buffer = |name, bytes| {
-                job.plan.buffer(&light::sized(name, &sides, side), bytes * u64::from(groups), Lifetime::Frame)
+                job.work.plan.buffer(&light::sized(name, &sides, side), bytes * u64::from(groups), Lifetime::Frame)
             };
             let (masks, before) = (buffer("maps/large.masks", MARKING / 8), buffer("maps/large.before", 4));
             Self { side, groups, masks, before, rows, from }
@@ -75,7 +75,7 @@ impl Large {
 
     /// Counts what is marked.
     pub fn count(&self, job: &mut Job<'_>, points: Option<&Points>, view: u32, name: &str) {
-        let pass = job.plan.pass(name).read("large_masks", self.masks).push(&view);
+        let pass = job.work.plan.pass(name).read("large_masks", self.masks).push(&view);
         let pass = match points {
             Some(points) => points.number(pass),
             None => pass,

@@ -259,16 +259,17 @@ struct PlannedMaps {
 impl PlannedMaps {
     /// Images and buffers that all views share.
     fn begin(job: &mut Job<'_>) -> Result<Self, PlanError> {
-        let axes = Axes::checked(job.settings, job.scene)?;
-        let side = job.settings.whole(&SIDE);
-        let views = views::receiving(job, axes, side, job.settings.whole(&SPLAT_SIZE));
-        let splats = Splats::of(axes, job.settings);
+        let axes = Axes::checked(job.work.settings, job.work.scene)?;
+        let side = job.work.settings.whole(&SIDE);
+        let views = views::receiving(job, axes, side, job.work.settings.whole(&SPLAT_SIZE));
+        let splats = Splats::of(axes, job.work.settings);
         let layers = views::layers(&views, splats.levels())?;
-        let views = job.plan.upload("maps/views", &views);
+        let views = job.work.plan.upload("maps/views", &views);
         let fixed = sums::fixed(job, axes, side, layers);
         cells::check(axes, &fixed)?;
         let cells = Cells::plan(job, axes, side, views)?;
-        let mut map = |name: &&str| job.plan.image_array(name, [side, side], layers, Format::Rgba32f, Lifetime::Frame);
+        let mut map =
+            |name: &&str| job.work.plan.image_array(name, [side, side], layers, Format::Rgba32f, Lifetime::Frame);
         Ok(Self {
             splats,
             maps: splats.maps().iter().map(&mut map).collect(),
@@ -279,7 +280,7 @@ impl PlannedMaps {
             large: Large::plan(job, axes, &fixed),
             fixed,
             hierarchies: Hierarchy::plan(job, axes),
-            culls: culls(job.settings, axes),
+            culls: culls(job.work.settings, axes),
             drawn: false,
         })
     }
@@ -337,7 +338,7 @@ impl Taker for PlannedMaps {
         if let (Some(cells), Some(fixed)) = (&self.cells, &self.fixed) {
             cells.gather(job, fixed, view, name_of);
             if view + 1 == job.emissions.len() {
-                cells.tally(job, fixed, job.plan.image_decl(self.maps[0]).layers);
+                cells.tally(job, fixed, job.work.plan.image_decl(self.maps[0]).layers);
                 fixed.resolve(job, self.maps[0], self.splats.side, false);
             }
             return;
@@ -358,8 +359,8 @@ impl Taker for PlannedMaps {
             let number = if self.maps.len() > 1 { format!(".{at}") } else { String::new() };
             let name = name_of(&format!("maps/gather{number}"));
             let photons = job.photons;
-            let pass = photons.define(job.plan.pass(&name)).with([self.views()]);
-            let pass = self.splats.tell(job.settings, light, at, pass);
+            let pass = photons.define(job.work.plan.pass(&name)).with([self.views()]);
+            let pass = self.splats.tell(job.work.settings, light, at, pass);
             let clear = first.then_some([0.0; 4]);
             let Some(fixed) = &self.fixed else {
                 self.draw(photons, pass.target_layers(map, clear, Blend::Add));
@@ -374,8 +375,9 @@ impl Taker for PlannedMaps {
             }
             if let Some(large) = large {
                 large.count(job, points, view as u32, &name_of("maps/large"));
-                let pass = photons.define(job.plan.pass(&name_of("maps/gather.large"))).with([self.views()]);
-                let pass = self.splats.tell(job.settings, light, at, pass).with(photons.fetch(self.splats.columns()));
+                let pass = photons.define(job.work.plan.pass(&name_of("maps/gather.large"))).with([self.views()]);
+                let pass =
+                    self.splats.tell(job.work.settings, light, at, pass).with(photons.fetch(self.splats.columns()));
                 large.draw(pass.target_layers(map, clear, Blend::Add), points, view as u32);
             }
             if view + 1 == job.emissions.len() {

@@ -59,7 +59,7 @@ impl Points {
         }
         let sides = light::sides(job.emissions);
         let rows = job.emissions.len() as u64 * Row::BYTES;
-        let rows = job.plan.buffer("maps/points.rows", rows, Lifetime::Frame);
+        let rows = job.work.plan.buffer("maps/points.rows", rows, Lifetime::Frame);
         let all: Vec<Self> = sides.iter().filter_map(|&side| Self::of(job, axes, &sides, side, rows)).collect();
         if all.is_empty() {
             too_few(job, &["maps/pyramid", "maps/points"], "none are merged");
@@ -71,7 +71,7 @@ impl Points {
         let pyramid = Pyramid::of(job, axes, sides, side)?;
         let texels = level_side(side, pyramid.levels).pow(2) * pyramid.layers;
         let name = light::sized("maps/points.before", sides, side);
-        let before = job.plan.buffer(&name, 4 * (u64::from(texels) + 1), Lifetime::Frame);
+        let before = job.work.plan.buffer(&name, 4 * (u64::from(texels) + 1), Lifetime::Frame);
         Some(Self { pyramid, texels, before, rows })
     }
 
@@ -79,7 +79,7 @@ impl Points {
     pub fn count(&self, job: &mut Job<'_>, view: usize, views: BufferId, name_of: &dyn Fn(&str) -> String) {
         self.pyramid.build(job, job.emissions[view].lamp, views, name_of);
         let push = PointsPush { level: self.pyramid.levels as i32, row: view as u32 };
-        let pass = job.photons.define(job.plan.pass(&name_of("maps/points")));
+        let pass = job.photons.define(job.work.plan.pass(&name_of("maps/points")));
         // How many there are is asked of the photon image.
         let pass = self.pyramid.give(pass.with(job.photons.fetch(&[super::Column::Hit])), &["pyramid_points"]);
         let pass = pass.define("TEXELS", format!("{}u", self.texels));

@@ -84,7 +84,7 @@ impl Pyramid {
     /// Over `side` photons a side, of `sides` that there are; `None` where they are so few that their topmost level is they
     /// themselves.
     pub fn of(job: &mut Job<'_>, axes: Axes<'_>, sides: &[u32], side: u32) -> Option<Self> {
-        let (top, layers) = (job.settings.whole(&TOP), job.photons.layers());
+        let (top, layers) = (job.work.settings.whole(&TOP), job.photons.layers());
         let levels = (0..u32::BITS - 1).find(|&level| level_side(side, level) <= top).unwrap_or(0);
         if levels == 0 {
             return None;
@@ -107,11 +107,11 @@ impl Pyramid {
         let extent = [level_side(side, 1), 2 * (level_side(side, 1) + levels)];
         let mut image = |(name, format): (&'static str, _)| {
             let known = light::sized(&format!("maps/{}", name.replace('_', ".")), sides, side);
-            (name, job.plan.image_array(&known, extent, layers, format, Lifetime::Frame))
+            (name, job.work.plan.image_array(&known, extent, layers, format, Lifetime::Frame))
         };
         let columns = columns.into_iter().map(&mut image).collect();
-        let (map_side, diameter) = (job.settings.whole(&SIDE), job.settings.whole(&SPLAT_SIZE) as f32);
-        let share = job.settings.real(&SPREAD).unwrap_or_default() as f32;
+        let (map_side, diameter) = (job.work.settings.whole(&SIDE), job.work.settings.whole(&SPLAT_SIZE) as f32);
+        let share = job.work.settings.real(&SPREAD).unwrap_or_default() as f32;
         Some(Self { side, layers, levels, merge, counted, columns, map_side, diameter, share })
     }
 
@@ -126,7 +126,7 @@ impl Pyramid {
         let Self { side, map_side, diameter, share, .. } = *self;
         let push =
             PyramidPush { side: side as i32, level: level as i32, map_side: map_side as i32, light, diameter, share };
-        let pass = self.define(job.photons.define(job.plan.pass(name))).push(&push);
+        let pass = self.define(job.photons.define(job.work.plan.pass(name))).push(&push);
         let (converges, from_photons) = (self.counted && self.merge.tests(level), level == 1);
         let pass = if converges { pass.define("CONVERGE", 1) } else { pass };
         // Exact clusters begin where photons land.

@@ -36,12 +36,12 @@ pub fn fixed(job: &mut Job<'_>, axes: Axes<'_>, side: u32, layers: u32) -> Optio
             format!("{bytes} bytes of sums are more than a buffer of 128 MiB holds: splats are blended")
         }
         _ => {
-            let sums = job.plan.upload_once("maps/sums", &vec![0u8; bytes as usize]);
+            let sums = job.work.plan.upload_once("maps/sums", &vec![0u8; bytes as usize]);
             let unit = light::flux_unit(job.emissions);
-            return Some(Fixed { sums, unit: job.plan.upload("maps/unit", &[unit.recip() as f32, unit as f32]) });
+            return Some(Fixed { sums, unit: job.work.plan.upload("maps/unit", &[unit.recip() as f32, unit as f32]) });
         }
     };
-    job.plan.leave_out("maps/resolve", reason);
+    job.work.plan.leave_out("maps/resolve", reason);
     None
 }
 
@@ -64,8 +64,8 @@ impl Fixed {
 
     /// The map of all views' sums, on top of what was `drawn` to it.
     pub fn resolve(&self, job: &mut Job<'_>, map: ImageId, side: u32, drawn: bool) {
-        let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), job.plan.image_decl(map).layers];
-        let pass = self.resolving(job.plan.pass("maps/resolve"));
+        let groups = [side.div_ceil(GROUP), side.div_ceil(GROUP), job.work.plan.image_decl(map).layers];
+        let pass = self.resolving(job.work.plan.pass("maps/resolve"));
         let pass = if drawn { pass.define("DRAWN", 1) } else { pass };
         pass.store("maps_map", map).push(&(side as i32)).dispatch("maps/resolve.comp", groups, GROUP * GROUP);
     }

@@ -55,18 +55,18 @@ impl MapView {
 /// A margin of half a splat and a texel keeps every splat whole that reaches into the rectangle. Where the receiver
 /// ends before, so does the map, and splats cut there are normalised: no light leaks over the receiver's edge.
 pub fn receiving(job: &mut Job<'_>, axes: Axes<'_>, side: u32, diameter: u32) -> Vec<MapView> {
-    if job.settings.choice(&light::VIEW) == "shared" {
+    if job.work.settings.choice(&light::VIEW) == "shared" {
         return shared(job);
     }
     let full = margin(side, diameter);
     let of = |(layer, Receiver { patch, beyond }): (usize, &Receiver)| {
         let half = DVec2::new(patch.u.length(), patch.v.length());
         let margins = margins(half, *beyond, side, full);
-        let view = View::of_rectangle(patch.center, patch.u, patch.v, margins, job.everything);
+        let view = View::of_rectangle(patch.center, patch.u, patch.v, margins, job.work.everything);
         MapView::whole(&view, patch.receiver as u32, ANY, layer, Sides::Facing)
     };
-    let count = if job.settings.choice(&RECEIVERS) == "region" { 1 } else { job.receivers.len() };
-    let rectangles: Vec<_> = job.receivers[..count].iter().enumerate().map(of).collect();
+    let count = if job.work.settings.choice(&RECEIVERS) == "region" { 1 } else { job.work.receivers.len() };
+    let rectangles: Vec<_> = job.work.receivers[..count].iter().enumerate().map(of).collect();
     let windows = windows::of_shapes(job, axes, (side, full), rectangles.len());
     rectangles.into_iter().chain(windows).collect()
 }
@@ -99,11 +99,11 @@ fn margin(side: u32, diameter: u32) -> f64 {
 fn shared(job: &Job<'_>) -> Vec<MapView> {
     // Bands and tiles that are traced apart share their light's layer.
     let lights = job.emissions.iter().filter(|e| e.begins_view());
-    if job.settings.choice(&BIND) == "none" {
+    if job.work.settings.choice(&BIND) == "none" {
         let of = |(layer, e): (usize, &Emission)| MapView::whole(&e.view, ANY, e.lamp, layer, Sides::Facing);
         return lights.enumerate().map(of).collect();
     }
-    let kinds = lights.flat_map(|e| job.seen.iter().flat_map(move |&r| sides(job, e, r).map(move |s| (e, r, s))));
+    let kinds = lights.flat_map(|e| job.work.seen.iter().flat_map(move |&r| sides(job, e, r).map(move |s| (e, r, s))));
     let of = |(layer, (e, receiver, sides)): (usize, (&Emission, usize, Sides))| {
         MapView::whole(&e.view, receiver as u32, e.lamp, layer, sides)
     };
@@ -113,11 +113,12 @@ fn shared(job: &Job<'_>) -> Vec<MapView> {
 /// The sides of a receiver that light can fall on, as a light's view sees them: of a quad its back where something
 /// specular lies behind it.
 fn sides(job: &Job<'_>, e: &Emission, receiver: usize) -> impl Iterator<Item = Sides> + use<> {
-    let behind = match job.scene.objects.get(receiver) {
+    let behind = match job.work.scene.objects.get(receiver) {
         Some(Object { shape: Shape::Quad { center, u, v }, .. }) => {
             let normal = u.cross(*v);
             let towards = if e.view.perspective { *center - e.view.origin } else { e.view.forward };
-            job.scene.moves() || windows::lies_beyond(job.scene, *center, normal * towards.dot(normal).signum())
+            job.work.scene.moves()
+                || windows::lies_beyond(job.work.scene, *center, normal * towards.dot(normal).signum())
         }
         _ => true,
     };

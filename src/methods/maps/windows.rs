@@ -37,7 +37,7 @@ struct Shown {
 
 /// Windows for what no rectangle of the job's holds, in layers from `first` on; `full`: texels of margin about each.
 pub fn of_shapes(job: &mut Job<'_>, axes: Axes<'_>, (side, full): (u32, f64), first: usize) -> Vec<MapView> {
-    if job.settings.choice(&RECEIVERS) != "all" {
+    if job.work.settings.choice(&RECEIVERS) != "all" {
         return Vec::new();
     }
     let shown = shown(job);
@@ -51,7 +51,7 @@ pub fn of_shapes(job: &mut Job<'_>, axes: Axes<'_>, (side, full): (u32, f64), fi
     };
     if let Some(wide) = wide {
         let reason = format!("{wide}: its splats reach from one window into the next");
-        job.plan.leave_out("maps/windows", reason);
+        job.work.plan.leave_out("maps/windows", reason);
         return Vec::new();
     }
     let fit = (f64::from(side) / (MARGINS * full)).floor().max(1.0) as u32;
@@ -76,16 +76,16 @@ pub fn of_shapes(job: &mut Job<'_>, axes: Axes<'_>, (side, full): (u32, f64), fi
 
 /// Of every receiver that the camera may see beside the region's, what no rectangle shows.
 fn shown(job: &Job<'_>) -> Vec<Shown> {
-    let scene = job.scene;
-    let views = job.seen.iter().flat_map(|&receiver| match &scene.objects[receiver].shape {
+    let scene = job.work.scene;
+    let views = job.work.seen.iter().flat_map(|&receiver| match &scene.objects[receiver].shape {
         Shape::Quad { center, u, v } => {
             let normal = u.cross(*v);
             // Where the scene moves, what lies behind may change, and the views may not.
             let back = scene.moves() || lies_beyond(scene, *center, -normal);
-            let view = View::of_rectangle(*center, -*u, *v, [DVec2::ZERO; 2], job.everything);
+            let view = View::of_rectangle(*center, -*u, *v, [DVec2::ZERO; 2], job.work.everything);
             back.then_some(Shown { receiver, view, sides: Sides::Facing }).into_iter().collect::<Vec<_>>()
         }
-        _ => of_object(&scene.objects[receiver], receiver, job.everything),
+        _ => of_object(&scene.objects[receiver], receiver, job.work.everything),
     });
     views.collect()
 }

@@ -5,29 +5,15 @@ use super::{
     Bench, Column, Emission, Photons, Tracer, Tracing, emissions, paths, photon_buffer, photons, sides, view_name,
 };
 use crate::{
-    gpu::{BufferId, Phase, Plan, Resource},
-    passes::{PlanError, Work, account::account, extents::Receiver},
+    gpu::{BufferId, Phase, Resource},
+    passes::{PlanError, Work, account::account},
     scene::Scene,
-    settings::Settings,
-    view::Extent,
 };
 
 /// What a method plans with that takes photons.
 pub struct Job<'a> {
-    /// The plan to add to.
-    pub plan: &'a mut Plan,
-    /// The settings.
-    pub settings: &'a Settings,
-    /// The scene.
-    pub scene: &'a Scene,
-    /// The rectangles to cover: the receiver region or the scene's extent first, then what else may be seen.
-    pub receivers: &'a [Receiver],
-    /// All objects that may be seen lit, whatever their shape.
-    pub seen: &'a [usize],
-    /// Pixels of the picture.
-    pub size: [u32; 2],
-    /// All that the scene holds.
-    pub everything: &'a Extent,
+    /// The plan being made, scene and picture.
+    pub work: Work<'a>,
     /// The emission views, in the order in which they come.
     pub emissions: &'a [Emission],
     /// The photon buffer, filled anew for each view: the one of most photons, and in [`Taker::gather`] the view's own.
@@ -92,19 +78,8 @@ pub fn shoot<T: Taker>(
     let views = plan.upload("light/views", &views);
     let bench = Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views, base: "light" };
     let tracer = Tracer::plan(plan, &bench)?;
-    let mut job = Job {
-        plan,
-        settings,
-        scene,
-        receivers: work.receivers,
-        seen: work.seen,
-        size: work.size,
-        everything: work.everything,
-        emissions: &emissions,
-        photons: &all[0],
-        bench: &bench,
-        tracer: &tracer,
-    };
+    let mut job =
+        Job { work: Work { plan, ..*work }, emissions: &emissions, photons: &all[0], bench: &bench, tracer: &tracer };
     let mut taker = begin(&mut job)?;
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {
@@ -112,11 +87,11 @@ pub fn shoot<T: Taker>(
         let own = all.iter().find(|photons| photons.side == emission.side).unwrap_or(&all[0]);
         job.photons = own;
         let tracing = Tracing { scene: buffers, views, tracer: &tracer, class, photons: own, emission, index };
-        tracer.images(job.plan, &bench, Phase::Frame, index);
-        photons(job.plan, &name_of("light/photons"), &tracing);
+        tracer.images(job.work.plan, &bench, Phase::Frame, index);
+        photons(job.work.plan, &name_of("light/photons"), &tracing);
         taker.gather(&mut job, index, &name_of);
-        tracer.images(job.plan, &bench, Phase::Account, index);
-        accounts.push(account(job.plan, &name_of("light/account"), &tracing, &taker.capture()));
+        tracer.images(job.work.plan, &bench, Phase::Account, index);
+        accounts.push(account(job.work.plan, &name_of("light/account"), &tracing, &taker.capture()));
     }
     Ok(Shot::Taken(taker, Shots { accounts, bytes_each: all[0].bytes_each() }))
 }

@@ -36,9 +36,7 @@ const RELMSE: f64 = 0.01;
 /// Texels a side of the map, and pixels that are its texels.
 const MAP: u32 = 128;
 const PIXELS: u32 = pixels_of_map(MAP);
-/// Of splats: most faults lie in theirs.
-const SMALL: [(&str, &str); 4] =
-    [("maps.splat", "fixed"), ("light.side", "256"), ("maps.side", "128"), ("eye.samples", "1")];
+const SMALL: [(&str, &str); 3] = [("light.side", "256"), ("maps.side", "128"), ("eye.samples", "1")];
 /// The circles' radii, m.
 const RADII: [f64; 3] = [0.25, 0.5, 1.0];
 /// m about the axis within which the centre is sought.

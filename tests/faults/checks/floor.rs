@@ -35,7 +35,7 @@ const PRODUCTS: f64 = 1e-6;
 
 /// Texels a side of the maps here.
 const MAP: u32 = 64;
-const SMALL: [(&str, &str); 4] = [("maps.splat", "fixed"), ("light.side", "256"), ("maps.side", "64"), ONE];
+const SMALL: [(&str, &str); 3] = [("light.side", "256"), ("maps.side", "64"), ONE];
 /// What is known by hand is known at the middle of each pixel.
 const ONE: (&str, &str) = ("eye.samples", "1");
 /// Pixels left out along the border: the reach of splat and look-up.

@@ -26,13 +26,8 @@ const DRAWN: f64 = 1e-6;
 /// Of the mean. Measured 0.025; allowed what varying splats may come to (`tests/gathers/varying.rs`).
 const UNEVEN: f64 = 0.07;
 
-const MERGED: [(&str, &str); 5] = [
-    ("maps.merge", "exact"),
-    ("maps.spread", "4"),
-    ("maps.splat", "fixed"),
-    ("light.side", "128"),
-    ("maps.side", "64"),
-];
+const MERGED: [(&str, &str); 4] =
+    [("maps.merge", "exact"), ("maps.spread", "4"), ("light.side", "128"), ("maps.side", "64")];
 
 fn render_of(gpu: &Gpu, sources: &Sources, set: &[(&str, &str)]) -> Picture {
     render(gpu, sources, &job("glass-sphere", set, "region", [16, 16]))

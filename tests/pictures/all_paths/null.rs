@@ -55,15 +55,7 @@ fn a_bunny_of_index_one_vanishes() {
     let scene = scene("bunny", &[("materials.glass.ior", "1.0")]);
     let LightKind::Directional { direction, irradiance } = scene.lights[0].kind else { panic!("no sun") };
     let lit = direct_parallel(direction, scene.region.normal(), irradiance[0]);
-    let set = |class| {
-        [
-            ("maps.splat", "fixed"),
-            ("light.side", "1024"),
-            ("maps.side", "256"),
-            ("eye.samples", "4"),
-            ("light.paths", class),
-        ]
-    };
+    let set = |class| [("light.side", "1024"), ("maps.side", "256"), ("eye.samples", "4"), ("light.paths", class)];
     let render = |class| picture(&gpu, &job_of(scene.clone(), &set(class), "region", [PIXELS; 2]));
     let all = render("all:16");
     let bounds = [MEAN_ERROR, PERCENTILE_99, REGION_ERROR];
