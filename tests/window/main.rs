@@ -16,6 +16,8 @@ use std::{
 
 /// A picture small enough for a software device, with a caustic in it.
 const SMALL: &str = "--size 160x120 --set light.side=256 --set maps.side=256";
+/// What a window that a hand steers shows: light in splats, whose frames are the shorter.
+const QUICK: &str = "--size 160x120 --set light.side=256 --set maps.side=256 --set maps.splat=fixed";
 
 /// The program with a cache that only these tests share, and without the display of whoever runs them.
 fn program(arguments: &str) -> Command {

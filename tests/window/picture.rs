@@ -63,7 +63,7 @@ fn the_window_shows_the_caustic_as_render_writes_it() {
     let (code, csv, err) = ran(display.program(&view).output().unwrap());
     assert_eq!(code, Some(0), "{err}");
     assert!(err.contains("software device"), "the device is named: {err}");
-    for stage in ["light/photons", "maps/gather", "eye/trace", "window/show", "frame/wall"] {
+    for stage in ["light/photons", "maps/cells", "eye/trace", "window/show", "frame/wall"] {
         let row = csv.lines().find_map(|line| line.strip_prefix(&format!("{stage},"))).expect(stage);
         let median: f64 = row.split(',').next().unwrap().parse().expect("milliseconds");
         assert!(median > 0.0 && median.is_finite(), "{csv}");

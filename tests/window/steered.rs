@@ -3,7 +3,7 @@
 use std::{path::Path, process::Stdio};
 
 use crate::{
-    SMALL,
+    QUICK,
     display::Display,
     hand::Hand,
     picture::{Picture, mean_difference},
@@ -17,7 +17,7 @@ fn steered(scene: &str, steer: impl FnOnce(&Hand)) -> (Picture, String, String) 
     let display = Display::start();
     let folder = tempfile::tempdir().unwrap();
     let shot = folder.path().join("shot.png");
-    let view = format!("view {scene} {SMALL} --frames 1000000 --validation --screenshot {}", shot.display());
+    let view = format!("view {scene} {QUICK} --frames 1000000 --validation --screenshot {}", shot.display());
     let mut command = display.program(&view);
     let program = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut program = Ended(program);
