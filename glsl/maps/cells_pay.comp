@@ -3,12 +3,13 @@
 #extension GL_GOOGLE_include_directive : require
 
 // Which cells of a view pay for being traced finer: those without which uniform emission would take fewer rays to the error that
-// is left.
+// is left, and no more of them than make that small enough.
 
 layout(local_size_x = 1) in;
 
 layout(push_constant, scalar) uniform Push {
     uint view;
+    float enough; // sum of errors
 } push;
 
 #include "maps/finer.glsl"
@@ -34,15 +35,18 @@ float cost(float rays, float weight) {
 
 void main() {
     uint row = row_of(push.view, 0u), pays = OCTAVES;
-    float rays = float(cells_rows.data[row + RAYS]), weight = 0.0;
+    float rays = float(cells_rows.data[row + RAYS]), weight = 0.0, error = 0.0;
     for (uint octave = 0u; octave < OCTAVES; octave++) { // the first, too: an error that no ray takes away
-        weight += float(cells_rows.data[row + WEIGHTS + octave]) * weight_of(octave);
+        float cells = float(cells_rows.data[row + WEIGHTS + octave]), each = weight_of(octave);
+        weight += cells * each;
+        error += cells * each * each;
     }
     vec2 best = vec2(rays, weight);
-    for (uint octave = OCTAVES - 1u; octave > 0u; octave--) {
-        float cells = float(cells_rows.data[row + WEIGHTS + octave]);
+    for (uint octave = OCTAVES - 1u; octave > 0u && error > push.enough; octave--) {
+        float cells = float(cells_rows.data[row + WEIGHTS + octave]), each = weight_of(octave);
         rays += RAYS_FINER * cells;
-        weight -= cells * weight_of(octave) * (1.0 - LEFT_OVER);
+        weight -= cells * each * (1.0 - LEFT_OVER);
+        error -= cells * each * each * (1.0 - LEFT_OVER * LEFT_OVER);
         if (cells > 0.0 && cost(rays, weight) < cost(best.x, best.y)) {
             best = vec2(rays, weight);
             pays = octave;

@@ -67,6 +67,21 @@ fn what_is_too_much_for_a_level_is_left_and_counted() {
 }
 
 #[test]
+fn no_more_is_traced_finer_than_makes_the_error_small_enough() {
+    let gpu = gpu();
+    let of = ["0", "0.03", "1"].map(|enough| {
+        adapted(&gpu, "bunny", &[("light.side", "16"), ("maps.adapt", "1"), ("maps.adapt_error", enough)])
+    });
+    let [all, some, none] = of.each_ref().map(|(picture, counted)| {
+        let ratio = picture.energy.ratio.expect("light arrives");
+        assert!((ratio - 1.0).abs() <= EXACT && counted.left == 0, "{counted:?}");
+        counted.refined
+    });
+    println!("{all} {some} {none}");
+    assert!(all > some && some > none && none == 0, "{all} {some} {none}");
+}
+
+#[test]
 fn no_seam_shows_where_levels_meet() {
     // Light through a flat sheet is even. Cells that the floor's edge cuts go down four levels; those within do not.
     let gpu = gpu();

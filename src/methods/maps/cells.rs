@@ -119,7 +119,7 @@ impl Cells {
         let counts = job.work.plan.upload_once("maps/cells.counts", &vec![0u32; count]);
         let places = (LARGE_EACH * cells * u64::from(job.photons.layers())).min(LARGE_MOST);
         let large = job.work.plan.buffer("maps/cells.large", places * LARGE_BYTES, Lifetime::Frame);
-        let finer = Finer::plan(job);
+        let finer = Finer::plan(job, side);
         let each = |[x, y]: [u32; 2]| u64::from(x) * u64::from(y) + u64::from(x + 1) * u64::from(y + 1);
         let samples = job.emissions.iter().map(|emission| each(emission.held())).sum();
         let buffer = job.work.plan.buffer("maps/cells.tally", TALLY_BYTES, Lifetime::Frame);

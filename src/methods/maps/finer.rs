@@ -10,7 +10,7 @@ use super::Job;
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder, Resource, Row},
     passes::light::{Emission, SamplePush, TRACER, Tracing},
-    settings::{Settings, Whole},
+    settings::{Real, Settings, Whole},
 };
 
 pub static ADAPT: Whole = Whole {
@@ -28,6 +28,15 @@ pub static MOST: Whole = Whole {
     default: 1 << 18,
     range: 1..=1 << 20,
     doc: "cells of a view that are traced finer in each level, at most; of more, those that are wrong by least are left, and counted",
+};
+
+pub static ENOUGH: Real = Real {
+    key: "maps.adapt_error",
+    unit: "",
+    default: Some(5e-5),
+    range: 0.0..=1.0,
+    doc: "relMSE of the map, by estimate, below which cells are not traced finer; 0: as far as it pays. What is below is seldom \
+          seen beside what the map's own texels blur",
 };
 
 /// Smaller cells of one (`FINER` squared there).
@@ -53,6 +62,16 @@ pub struct Finer {
     /// What errors are held against.
     lights: BufferId,
     most: u32,
+    /// The sum of errors that is small enough.
+    enough: f32,
+}
+
+/// Push constants of `glsl/maps/cells_pay.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PayPush {
+    view: u32,
+    enough: f32,
 }
 
 /// Push constants of `glsl/maps/cells_refine.comp`.
@@ -90,7 +109,7 @@ type Give<'a> = &'a dyn for<'p> Fn(PassBuilder<'p>) -> PassBuilder<'p>;
 
 impl Finer {
     /// Adds the lists; `None` where no cell is traced finer.
-    pub fn plan(job: &mut Job<'_>) -> Option<Self> {
+    pub fn plan(job: &mut Job<'_>, side: u32) -> Option<Self> {
         let levels = levels(job.work.settings);
         if levels == 0 {
             let reason = match job.work.settings.choice(&TRACER) {
@@ -120,7 +139,9 @@ impl Finer {
             job.work.plan.upload_once("maps/cells.rows", &job.emissions.iter().flat_map(row).collect::<Vec<_>>());
         let lights: Vec<_> = job.emissions.iter().map(|emission| held_against(job, emission)).collect();
         let lights = job.work.plan.upload("maps/cells.lights", &lights);
-        Some(Self { lists, rows, lights, most })
+        let texels = f64::from(side).powi(2);
+        let enough = (job.work.settings.real(&ENOUGH).unwrap_or_default() * texels) as f32;
+        Some(Self { lists, rows, lights, most, enough })
     }
 
     /// Gives a pass the list of a level to fill.
@@ -140,7 +161,8 @@ impl Finer {
 
     /// Makes a pass the one that says which of them pay.
     pub fn pay(&self, pass: PassBuilder<'_>, view: usize) {
-        self.count(pass).push(&(view as u32)).dispatch("maps/cells_pay.comp", [1, 1, 1], 1);
+        let push = PayPush { view: view as u32, enough: self.enough };
+        self.count(pass).push(&push).dispatch("maps/cells_pay.comp", [1, 1, 1], 1);
     }
 
     /// Gives the pass over the view's own grid the first list.

@@ -19,7 +19,7 @@ mod windows;
 use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
 use cells::Cells;
 use copied::{COPY, Vertices};
-use finer::{ADAPT, MOST};
+use finer::{ADAPT, ENOUGH, MOST};
 use hierarchy::Hierarchy;
 use large::{Large, RASTER_FROM};
 use points::Points;
@@ -116,6 +116,7 @@ static SETTINGS: &[Setting] = &[
     Setting::Choice(&BIND),
     Setting::Whole(&ADAPT),
     Setting::Whole(&MOST),
+    Setting::Real(&ENOUGH),
 ];
 
 static CHAIN: &[Link] = &[
@@ -156,6 +157,7 @@ static CHAIN: &[Link] = &[
             "maps.bind",
             "maps.adapt",
             "maps.adapt_most",
+            "maps.adapt_error",
             "light.tile",
             "eye.samples",
         ],
