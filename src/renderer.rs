@@ -26,6 +26,7 @@ use crate::{
 };
 
 pub use moving::Moved;
+use plan::plan_with;
 pub use plan::{Planned, Providers, plan};
 pub use read::{Counted, Dump, Energy, resource};
 pub use show::LAYERS;
@@ -108,6 +109,11 @@ impl Job {
         Ok(self.scene.camera(&self.camera)?)
     }
 
+    /// The same on a device.
+    fn on(&self, gpu: &Gpu) -> Self {
+        Self { settings: self.settings.on(gpu.info().is_software()), ..self.clone() }
+    }
+
     /// Samples a pixel along each axis: the value in force of `eye.samples`.
     pub fn eye_samples(&self) -> u32 {
         let own = self.providers.surface.and_then(|method| method.eye_samples(&self.settings));
@@ -136,17 +142,25 @@ impl Renderer {
 
     /// As [`Self::new`], with shaders of one's own in the place of some shipped ones.
     pub fn with_sources(gpu: &Gpu, job: &Job, sources: Sources) -> Result<Self, RenderError> {
+        let job = &job.on(gpu);
         Self::prepare(gpu, job, plan(job)?, sources, Store::open(), None)
     }
 
-    /// As [`Self::with_sources`], with the plan of this very job made before.
-    pub fn planned(gpu: &Gpu, job: &Job, planned: Planned, sources: Sources) -> Result<Self, RenderError> {
-        Self::prepare(gpu, job, planned, sources, Store::open(), None)
+    /// As [`Self::with_sources`], with the plan of this very job made before. What hangs on the kind of device is planned again.
+    pub fn planned(gpu: &Gpu, job: &Job, mut planned: Planned, sources: Sources) -> Result<Self, RenderError> {
+        let on = job.on(gpu);
+        if on.settings != job.settings {
+            let mut trees = std::mem::take(&mut planned.trees);
+            let again = plan_with(&on, &mut trees)?;
+            planned = Planned { trees, plan_ms: planned.plan_ms + again.plan_ms, ..again };
+        }
+        Self::prepare(gpu, &on, planned, sources, Store::open(), None)
     }
 
     /// Plans again for a changed job; what did not change is kept.
     pub fn replan(self, job: &Job) -> Result<Self, RenderError> {
         let Self { gpu, program, sources, store, .. } = self;
+        let job = &job.on(&gpu);
         Self::prepare(&gpu, job, plan(job)?, sources, store, Some(&program))
     }
 

@@ -166,6 +166,7 @@ pub enum SettingError {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     set: BTreeMap<&'static str, String>,
+    on_software: bool,
 }
 
 impl Settings {
@@ -188,6 +189,16 @@ impl Settings {
         }
         self.set.insert(setting.key(), value.to_owned());
         Ok(())
+    }
+
+    /// The same on a device of a kind; a GPU, unless said. What is fastest may hang on it, where nobody has set it.
+    pub fn on(&self, software: bool) -> Self {
+        Self { on_software: software, ..self.clone() }
+    }
+
+    /// Whether the device computes on the CPU.
+    pub fn is_on_software(&self) -> bool {
+        self.on_software
     }
 
     /// A whole number.

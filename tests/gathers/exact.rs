@@ -2,7 +2,7 @@
 
 use nephroid::{
     gpu::{Gpu, Work},
-    renderer::{self, Dump},
+    renderer::{self, Dump, Job},
 };
 
 use super::{
@@ -153,13 +153,17 @@ fn every_photon_s_splat_may_be_large() {
 
 #[test]
 fn large_fixed_splats_are_drawn() {
-    for (set, drawn) in [
-        (&[("maps.splat_size", "7")][..], false),
-        (&[("maps.splat_size", "8")], true),
-        (&[("maps.splat_size", "8"), ("maps.raster_from", "256")], false),
-        (&[("maps.splat_size", "8"), ("maps.merge", "exact")], false),
+    let (software, gpu) = (true, false);
+    for (on, set, drawn) in [
+        (software, &[("maps.splat_size", "7")][..], false),
+        (software, &[("maps.splat_size", "8")], true),
+        (gpu, &[("maps.splat_size", "63")], false),
+        (gpu, &[("maps.splat_size", "8"), ("maps.raster_from", "8")], true),
+        (software, &[("maps.splat_size", "8"), ("maps.raster_from", "256")], false),
+        (software, &[("maps.splat_size", "8"), ("maps.merge", "exact")], false),
     ] {
-        let plan = renderer::plan(&job("glass-sphere", set, "region", [8, 8])).unwrap().plan;
+        let job = job("glass-sphere", set, "region", [8, 8]);
+        let plan = renderer::plan(&Job { settings: job.settings.on(on), ..job }).unwrap().plan;
         let gather = plan.passes.iter().find(|pass| pass.name == "maps/gather").unwrap();
         assert_eq!(matches!(gather.work, Work::Raster { .. }), drawn, "{set:?}");
         assert_eq!(plan.left_out.iter().any(|l| l.reason.contains("maps.raster_from")), drawn, "{set:?}");

@@ -9,17 +9,22 @@ use super::{
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder, Row},
     passes::light,
-    settings::Whole,
+    settings::{Settings, Whole},
 };
 
 pub static RASTER_FROM: Whole = Whole {
     key: "maps.raster_from",
     unit: "texels",
-    default: 8,
-    range: 1..=256,
-    doc: "with maps.traverse = compute, the diameter from which splats are drawn and blended in float32, since summing them in \
-          fixed point takes longer; 256: none is",
+    default: 0,
+    range: 0..=256,
+    doc: "with maps.traverse = compute, the diameter from which splats are drawn and blended in float32 in place of summed in fixed \
+          point; 256: none is; 0: what is faster by the kind of device, 256 on a GPU, 8 on a software device",
 };
+
+/// [`RASTER_FROM`] where nobody has set it: on lavapipe drawing is faster from some 8 texels on, on an H200 summing 6 to 14 times
+/// for all from 3 to 21 (`README.md`).
+const FROM_ON_SOFTWARE: u32 = 8;
+const FROM_ON_GPU: u32 = 256;
 
 /// Kinds of splats of any size. Of ellipses, which are thin, the square that is drawn would be mostly empty.
 const ROUND: [&str; 2] = ["varying", "thin-lens"];
@@ -41,16 +46,25 @@ pub struct Large {
     from: u32,
 }
 
+/// The diameter in force from which splats are drawn, texels.
+fn raster_from(settings: &Settings) -> u32 {
+    match settings.whole(&RASTER_FROM) {
+        0 if settings.is_on_software() => FROM_ON_SOFTWARE,
+        0 => FROM_ON_GPU,
+        from => from,
+    }
+}
+
 /// Whether fixed splats are so large that all of them are drawn.
 pub fn all_drawn(job: &Job<'_>, axes: Axes<'_>) -> bool {
     let size = job.work.settings.whole(&super::SPLAT_SIZE);
-    (axes.splat, axes.merge) == ("fixed", "none") && size >= job.work.settings.whole(&RASTER_FROM)
+    (axes.splat, axes.merge) == ("fixed", "none") && size >= raster_from(job.work.settings)
 }
 
 impl Large {
     /// Buffers, for each size of view; none where no splat can be large.
     pub fn plan(job: &mut Job<'_>, axes: Axes<'_>, fixed: &Option<Fixed>) -> Vec<Self> {
-        let from = job.work.settings.whole(&RASTER_FROM);
+        let from = raster_from(job.work.settings);
         if fixed.is_none() || !ROUND.contains(&axes.splat) || from > 255 {
             return Vec::new();
         }
