@@ -51,6 +51,12 @@ between() {
     $0 == first { inside = 1; while ((getline line < part) > 0) print line }' "$1"
 }
 
+# The device that a program ($1) renders on, and its kind; $2 is a folder to write into. A name with a comma is quoted.
+device_of() {
+  "$1" render diffuse --size 8x8 --format csv --out "$2" 2>/dev/null |
+    sed -nE '2s/^[^,]*,[^,]*,[^,]*,"?([^"]*)"?,([^,]*)$/\1, a \2 device/p'
+}
+
 # Sum of the medians of the stages that make the caustic (or of those that $2 matches), ms, from the samples of a render as CSV ($1).
 cost_of() {
   awk -F, -v stages="${2:-^(light|maps|waves)/}" '$1 ~ stages && $2 != "" { print $1, $3 }' "$1" | sort -k 1,1 -k 2,2n | awk '

@@ -21,7 +21,7 @@ pub struct RenderArgs {
     pub job: JobArgs,
     #[command(flatten)]
     pub device: DeviceArgs,
-    /// Frames before timing begins; where it is not 0, a GPU is kept busy for half a second at least, until its clocks are up
+    /// Frames before timing begins; where it is not 0, a GPU is kept busy for half a second at least, until its clocks are up (not for a single timed frame)
     #[arg(long, value_name = "W", default_value_t = 1)]
     pub warmup: u32,
     /// Timed frames

@@ -123,7 +123,7 @@ impl<'s> Axes<'s> {
     /// Axes that contradict the preset, or each other.
     pub fn checked(settings: &'s Settings, scene: &Scene) -> Result<Self, PlanError> {
         let axes = Self::of(settings, scene);
-        for (key, value) in KEYS.into_iter().zip(axes.values()) {
+        for (key, value) in KEYS.into_iter().zip(Self::asked(settings).values()) {
             let asked = settings.choice(key);
             if settings.is_set(Setting::Choice(key)) && asked != value {
                 let gather = settings.choice(&GATHER);
@@ -232,6 +232,10 @@ mod tests {
         {
             assert_eq!(splat("glass-sphere", &[set]), "fixed", "{set:?}");
         }
+        let scene = Scene::load("glass-sphere", &[]).unwrap();
+        let auto = [("maps.splat", "auto"), ("maps.gather", "fixed")];
+        assert_eq!(Axes::checked(&settings(&auto[..1]), &scene).unwrap().splat, "cells", "the default, said");
+        assert!(Axes::checked(&settings(&auto), &scene).is_err(), "the preset says otherwise");
     }
 
     #[test]
