@@ -66,7 +66,8 @@ pub struct Frame {
     pub index: u32,
     /// Seed of anything random.
     pub seed: u32,
-    /// Another place to look from than the camera's; it must see the same objects.
+    /// Another place to look from than the camera's; it must see the same objects. Where the camera's picture has no room
+    /// for a sky (the plan says so), neither has this one.
     pub camera: Option<View>,
 }
 

@@ -3,19 +3,25 @@
 #extension GL_GOOGLE_include_directive : require
 
 // Pixels that look at or through specular objects: the Fresnel tree, exact, to DEPTH events a path, added to the
-// radiance of direct light and of the caustic. What lies deeper is not seen.
+// radiance of direct light, of the caustic and of the sky. What lies deeper is not seen.
 
 #include "eye/direct.glsl"
 #include "eye/gbuffer.glsl"
 #include "eye/medium.glsl"
 #include "shared/albedo.glsl"
 #include "provider.glsl"
+#ifdef SKY
+#include "eye/sky.glsl"
+#endif
 
 layout(location = 0) out vec4 direct;
 #ifdef CAUSTIC
 layout(location = 1) out vec4 caustic;
 #else
 vec4 caustic; // no provider: nothing to write
+#endif
+#ifdef SKY
+layout(location = SKY_LOCATION) out vec4 sky;
 #endif
 
 const float FAINT = 1e-4; // a branch that carries less of what the eye sees is left
@@ -70,7 +76,12 @@ void look(Surface s, vec3 d) {
     while (branch_count > 0) {
         Branch b = branches[--branch_count];
         Hit hit;
-        if (!trace(b.o, b.d, FAR, MASK_ALL, hit)) continue;
+        if (!trace(b.o, b.d, FAR, MASK_ALL, hit)) {
+#ifdef SKY
+            sky.rgb += b.share * sky_seen(b.d, innermost(b.media));
+#endif
+            continue;
+        }
         Surface at = surface_at(b.o, b.d, hit);
         Material m = scene_materials.data[at.material];
         vec3 share = b.share * medium_transmits(innermost(b.media), hit.t);
@@ -88,6 +99,9 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     direct = vec4(0.0);
     caustic = vec4(0.0);
+#ifdef SKY
+    sky = vec4(0.0);
+#endif
     int samples = push.samples * push.samples;
     for (int k = 0; k < samples; k++) {
 #ifdef AREA_SAMPLES
@@ -106,4 +120,7 @@ void main() {
     }
     direct /= float(samples);
     caustic /= float(samples);
+#ifdef SKY
+    sky /= float(samples);
+#endif
 }

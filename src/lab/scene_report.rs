@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Cell, Report, Table};
 use crate::{
     metrics::bare_irradiance,
-    scene::{Camera, CameraKind, Import, LightKind, Material, MaterialKind, Region, Scene, Shape},
+    scene::{Camera, CameraKind, Import, LightKind, Material, MaterialKind, Region, Scene, Shape, Sky},
 };
 
 /// One scene.
@@ -31,6 +31,7 @@ pub struct SceneReport {
     objects: Vec<ObjectRow>,
     materials: Vec<MaterialRow>,
     lights: Vec<LightRow>,
+    sky: Option<SkyRow>,
     cameras: Vec<CameraRow>,
     imports: Vec<ImportRow>,
     warnings: Vec<String>,
@@ -89,6 +90,20 @@ struct LightRow {
     moves: Vec<&'static str>,
 }
 
+/// What is seen where nothing is.
+#[derive(Debug, Serialize)]
+struct SkyRow {
+    kind: &'static str,
+    /// By name, W/m²/sr of each band.
+    #[serde(flatten)]
+    values: BTreeMap<&'static str, [f64; 3]>,
+    /// The picture.
+    file: Option<String>,
+    up: [f64; 3],
+    /// What is in the picture's middle.
+    ahead: Option<[f64; 3]>,
+}
+
 #[derive(Debug, Serialize)]
 struct CameraRow {
     name: String,
@@ -136,6 +151,7 @@ impl SceneReport {
             objects: (0..scene.objects.len()).map(|object| ObjectRow::new(scene, object)).collect(),
             materials: scene.materials.iter().map(MaterialRow::new).collect(),
             lights: (0..scene.lights.len()).map(|light| LightRow::new(scene, light)).collect(),
+            sky: scene.sky.as_ref().map(SkyRow::new),
             cameras: scene.cameras.iter().map(|(name, camera)| CameraRow::new(name, camera)).collect(),
             imports: scene.imports.iter().map(ImportRow::new).collect(),
             warnings: scene.warnings.clone(),
@@ -255,6 +271,36 @@ impl LightRow {
     }
 }
 
+impl SkyRow {
+    fn new(sky: &Sky) -> Self {
+        match sky {
+            Sky::Gradient { up, zenith, horizon, ground } => {
+                let values = [("zenith", *zenith), ("horizon", *horizon), ("ground", *ground)];
+                Self {
+                    kind: "gradient",
+                    values: values.into_iter().collect(),
+                    file: None,
+                    up: up.to_array(),
+                    ahead: None,
+                }
+            }
+            Sky::Image { picture, up, ahead } => Self {
+                kind: "image",
+                values: BTreeMap::new(),
+                file: Some(picture.file.clone()),
+                up: up.to_array(),
+                ahead: Some(ahead.to_array()),
+            },
+        }
+    }
+
+    fn text(&self) -> String {
+        let of = |name: &str| self.values.get(name).map(|bands| format!("{name} {}", shown(*bands)));
+        let values: Vec<_> = ["zenith", "horizon", "ground"].into_iter().filter_map(of).collect();
+        self.file.clone().unwrap_or_else(|| values.join(", "))
+    }
+}
+
 impl CameraRow {
     fn new(name: &str, camera: &Camera) -> Self {
         let (kind, fov_y_degrees, height_m) = match camera.kind {
@@ -333,6 +379,10 @@ impl Report for SceneReport {
             table("lights", &["light", "kind", "strength", "power W", "place", "moves"], lights.collect()),
             table("cameras", &["camera", "kind", "field", "looks", "sees"], cameras.collect()),
         ];
+        if let Some(sky) = &self.sky {
+            let row = vec![Cell::text(sky.kind), Cell::text(sky.text()), Cell::text(vector(sky.up))];
+            all.push(table("sky", &["sky", "seen, W/m2/sr", "up"], vec![row]));
+        }
         if !imports.is_empty() {
             all.push(table("imports", &imported, imports));
         }

@@ -1,7 +1,7 @@
-//! The eye: G-buffer, direct light with shadows, the surface slot, pixels that look through glass, compose.
+//! The eye: G-buffer, direct light with shadows, the surface slot, the sky, pixels that look through glass, compose.
 //!
 //! Cost: the G-buffer is bound by its k² samples a pixel (16 bytes each); direct light by one shadow ray a sample and
-//! light; traced pixels by their Fresnel trees.
+//! light; traced pixels by their Fresnel trees; the sky by its look-ups, where nothing else is seen.
 
 use glam::{DVec2, DVec3};
 
@@ -9,6 +9,7 @@ use super::{
     Work,
     lamps::Lamps,
     scene::{SceneBuffers, visible_draws},
+    sky::{self, SkyBuffers},
 };
 use crate::{
     gpu::{Blend, BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource, Topology},
@@ -163,6 +164,8 @@ pub struct EyeLayers {
     pub irradiance_caustic: Option<ImageId>,
     /// Radiance by the caustic, W/m²/sr.
     pub caustic: Option<ImageId>,
+    /// Radiance of the sky, W/m²/sr, where the scene has one that may be seen.
+    pub sky: Option<ImageId>,
     /// Their sum.
     pub radiance: ImageId,
 }
@@ -181,6 +184,8 @@ struct Eye<'a> {
 /// Adds the eye's passes.
 pub fn passes(work: &mut Work<'_>, lamps: &Lamps, surface: Option<&SurfaceProvider>) -> EyeLayers {
     let gbuffer = gbuffer(work);
+    let hidden = work.scene.sky.is_some() && sky::is_hidden(work);
+    let sky = if hidden { None } else { SkyBuffers::upload(work.plan, work.scene, work.arrays) };
     let push = EyePush { size: work.size.map(|s| s as i32), samples: work.samples as i32 };
     let (buffers, frame, size) = (work.buffers, work.frame, work.size);
     let mut eye = Eye { plan: &mut *work.plan, buffers, lamps, frame, gbuffer, push, size };
@@ -197,8 +202,12 @@ pub fn passes(work: &mut Work<'_>, lamps: &Lamps, surface: Option<&SurfaceProvid
         let object = work.arrays.instances[d.first_instance as usize].object as usize;
         work.scene.materials[work.scene.objects[object].material].is_specular()
     });
+    let sky = sky.map(|buffers| (buffers, eye.sky(&buffers)));
+    if hidden {
+        eye.plan.leave_out("eye/sky", "the receiver fills the picture");
+    }
     if sees_specular {
-        eye.trace(work.settings.whole(&DEPTH), direct, caustic, surface);
+        eye.trace(work.settings.whole(&DEPTH), direct, caustic, surface, sky);
     } else if !work.scene.has_specular() {
         eye.plan.leave_out("eye/trace", "nothing in the scene is specular");
     } else {
@@ -210,8 +219,13 @@ pub fn passes(work: &mut Work<'_>, lamps: &Lamps, surface: Option<&SurfaceProvid
         Some(caustic) => compose.fetch("layer_caustic", caustic).define("CAUSTIC", 1),
         None => compose,
     };
+    let sky = sky.map(|(_, layer)| layer);
+    let compose = match sky {
+        Some(sky) => compose.fetch("layer_sky", sky).define("SKY", 1),
+        None => compose,
+    };
     compose.target(radiance, 0, Some([0.0; 4]), Blend::Replace).screen("passes/compose.frag");
-    EyeLayers { irradiance_direct, direct, irradiance_caustic, caustic, radiance }
+    EyeLayers { irradiance_direct, direct, irradiance_caustic, caustic, sky, radiance }
 }
 
 /// Push constants of `glsl/eye/gbuffer.frag`.
@@ -276,7 +290,25 @@ impl Eye<'_> {
         (irradiance, radiance)
     }
 
-    fn trace(&mut self, depth: u32, direct: ImageId, caustic: Option<ImageId>, surface: Option<&SurfaceProvider>) {
+    fn sky(&mut self, sky: &SkyBuffers) -> ImageId {
+        let layer = self.target("eye/sky");
+        sky.give(self.buffers.surfaces(self.plan.pass("eye/sky")))
+            .read("frame", self.frame)
+            .fetch("eye_gbuffer", self.gbuffer)
+            .push(&self.push)
+            .target(layer, 0, Some([0.0; 4]), Blend::Replace)
+            .screen("eye/sky.frag");
+        layer
+    }
+
+    fn trace(
+        &mut self,
+        depth: u32,
+        direct: ImageId,
+        caustic: Option<ImageId>,
+        surface: Option<&SurfaceProvider>,
+        sky: Option<(SkyBuffers, ImageId)>,
+    ) {
         let (buffers, lamps) = (self.buffers, self.lamps);
         let pass = buffers.tracing(buffers.colours(self.plan.pass("eye/trace")));
         let pass = lit(buffers, lamps, pass);
@@ -292,6 +324,10 @@ impl Eye<'_> {
             .target(direct, 0, None, Blend::Add);
         if let Some(caustic) = caustic {
             pass = pass.define("CAUSTIC", 1).target(caustic, 0, None, Blend::Add);
+        }
+        if let Some((buffers, layer)) = sky {
+            let location = 1 + u32::from(caustic.is_some());
+            pass = buffers.give(pass).define("SKY_LOCATION", location).target(layer, 0, None, Blend::Add);
         }
         pass.screen("eye/trace.frag");
     }

@@ -8,6 +8,7 @@ pub mod eye;
 pub mod lamps;
 pub mod light;
 pub mod scene;
+pub mod sky;
 pub mod water;
 mod work;
 

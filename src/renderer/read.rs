@@ -54,7 +54,8 @@ pub struct Counted {
 }
 
 impl Renderer {
-    /// The picture's layers: `radiance`, `direct`, `caustic`, `irradiance.direct`, `irradiance.caustic`, `mask`.
+    /// The picture's layers: `radiance`, `direct`, `caustic`, `irradiance.direct`, `irradiance.caustic`, `mask`, and
+    /// `sky` where the scene has one.
     pub fn layers(&self) -> Result<Layers, RenderError> {
         let layers = self.planned.layers;
         let [width, height] = self.plan_extent(layers.radiance);
@@ -77,6 +78,10 @@ impl Renderer {
         ];
         for (name, channels, data) in all {
             picture.push(name, channels, data).expect("the layers above are of the picture's size");
+        }
+        if self.job.scene.sky.is_some() {
+            let sky = rgb(&read(layers.sky)?);
+            picture.push("sky", 3, sky).expect("it is of the picture's size");
         }
         Ok(picture)
     }

@@ -7,8 +7,9 @@ use crate::{
     passes::eye::EyeLayers,
 };
 
-/// Names of the picture's layers, in the order of [`Renderer::layers`].
-pub const LAYERS: [&str; 6] = ["radiance", "direct", "caustic", "irradiance.direct", "irradiance.caustic", "mask"];
+/// Names of the picture's layers, in the order of [`Renderer::layers`]; `sky` where the scene has one.
+pub const LAYERS: [&str; 7] =
+    ["radiance", "direct", "caustic", "irradiance.direct", "irradiance.caustic", "mask", "sky"];
 
 impl Renderer {
     /// Shows a layer of the last frame, or black where the frame has none; ms on the device. `None` if the screen must
@@ -26,13 +27,14 @@ impl Renderer {
 
     /// The image that holds a layer, and whether it is its fourth channel.
     fn layer(&self, name: &str) -> Result<(Option<ImageId>, bool), RenderError> {
-        let EyeLayers { irradiance_direct, direct, irradiance_caustic, caustic, radiance } = self.planned.layers;
+        let EyeLayers { irradiance_direct, direct, irradiance_caustic, caustic, sky, radiance } = self.planned.layers;
         Ok(match name {
             "radiance" => (Some(radiance), false),
             "direct" => (Some(direct), false),
             "caustic" => (caustic, false),
             "irradiance.direct" => (Some(irradiance_direct), false),
             "irradiance.caustic" => (irradiance_caustic, false),
+            "sky" => (sky, false),
             "mask" => (Some(irradiance_direct), true),
             _ => return Err(NoSuch::new("layer", name, LAYERS).into()),
         })

@@ -19,6 +19,7 @@ use super::{
     motion_files,
     object::object,
     patch,
+    sky::sky,
 };
 
 /// Parts of a metal's complex index.
@@ -38,6 +39,7 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
     let mut lights = each(root, "lights", &file.lights, |key, name, written| {
         Ok(Light { name, kind: light(key, written, unit, &mut assets)? })
     })?;
+    let sky = file.sky.as_ref().map(|written| sky(&root.key("sky"), written, &mut assets)).transpose()?;
     let imported = imports(root, &file.imports, unit, &materials, &mut assets)?;
     materials.extend(imported.materials);
     materials.sort_by(|a, b| a.name.cmp(&b.name));
@@ -73,6 +75,7 @@ pub fn build(name: String, file: SceneFile, source: Source, root: &Key, files: &
         objects,
         materials,
         lights,
+        sky,
         time: 0.0,
         motion: None,
     };

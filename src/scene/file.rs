@@ -13,6 +13,7 @@ use super::{
     sea_files::SeaFile,
     shape_files::{BoxFile, CylinderFile, DiskFile, ParaboloidFile, SineFile},
     sheet_files::{HeightsFile, WaveFile},
+    sky::SkyFile,
 };
 
 /// The one version there is.
@@ -48,6 +49,8 @@ pub struct SceneFile {
     /// Together they light the scene.
     #[serde(default)]
     pub lights: BTreeMap<String, LightFile>,
+    /// What is seen where nothing is; it lights nothing.
+    pub sky: Option<SkyFile>,
     /// glTF files whose objects, materials, lights and cameras come along as `NAME/…`.
     #[serde(default)]
     pub imports: BTreeMap<String, ImportFile>,

@@ -1,7 +1,7 @@
 //! The keys of the scene format by their place: what can be set, also where the file leaves it at its default.
 
 /// Tables that say of what kind their parent is; a dotted key may leave them out.
-pub const KINDS: [&str; 20] = [
+pub const KINDS: [&str; 22] = [
     "box",
     "conductor",
     "cylinder",
@@ -9,7 +9,9 @@ pub const KINDS: [&str; 20] = [
     "diffuse",
     "directional",
     "disk",
+    "gradient",
     "heights",
+    "image",
     "mesh",
     "mirror",
     "orthographic",
@@ -39,10 +41,14 @@ pub fn keys(path: &[&str]) -> &'static [&'static str] {
             "objects",
             "materials",
             "lights",
+            "sky",
             "imports",
         ],
         ["region"] => &["receiver", "center", "half"],
         ["extent"] => &["center", "half"],
+        ["sky"] => &["gradient", "image"],
+        ["sky", "gradient"] => &["zenith", "horizon", "ground", "up"],
+        ["sky", "image"] => &["file", "scale", "up", "turn"],
         ["cameras", _] => &["pinhole", "orthographic"],
         ["objects", _] => &[
             "material",
@@ -127,7 +133,7 @@ mod tests {
     use serde::Deserialize;
 
     use super::keys;
-    use crate::scene::{file, imports, motion_files, sea_files, shape_files, sheet_files};
+    use crate::scene::{file, imports, motion_files, sea_files, shape_files, sheet_files, sky};
 
     /// The keys that the deserialiser names when it meets one that it does not know.
     fn known<T: for<'de> Deserialize<'de>>() -> Vec<String> {
@@ -140,6 +146,9 @@ mod tests {
         assert_eq!(keys(&[]), known::<file::SceneFile>());
         assert_eq!(keys(&["region"]), known::<file::RegionFile>());
         assert_eq!(keys(&["extent"]), known::<file::PatchFile>());
+        assert_eq!(keys(&["sky"]), known::<sky::SkyFile>());
+        assert_eq!(keys(&["sky", "gradient"]), known::<sky::GradientFile>());
+        assert_eq!(keys(&["sky", "image"]), known::<sky::ImageFile>());
         assert_eq!(keys(&["cameras", ""]), known::<file::CameraFile>());
         assert_eq!(keys(&["cameras", "", "pinhole"]), known::<file::PinholeFile>());
         assert_eq!(keys(&["cameras", "", "orthographic"]), known::<file::OrthographicFile>());

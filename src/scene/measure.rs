@@ -13,8 +13,8 @@ use super::{
 pub const LARGEST: f64 = 1e9;
 /// Smallest size, m, for the same reason.
 const SMALLEST: f64 = 1e-9;
-/// Largest irradiance (W/m²), intensity (W/sr) or absorption (1/m); products of three stay within single precision.
-const STRONGEST: f64 = 1e12;
+/// Largest irradiance (W/m²), intensity (W/sr), radiance (W/m²/sr) or absorption (1/m); products of three stay within single precision.
+pub const STRONGEST: f64 = 1e12;
 const LENGTHS: &str = "correct it; lengths are those in the file times its `unit`";
 /// Directions shorter than this cannot be normalised safely, longer ones overflow when squared.
 const DIRECTIONS: RangeInclusive<f64> = 1e-100..=1e100;

@@ -48,6 +48,7 @@ mod sheet;
 mod sheet_files;
 mod shipped;
 mod sine;
+mod sky;
 mod slide;
 mod track;
 mod wave;
@@ -65,6 +66,7 @@ pub use models::Models;
 pub use picture::{MOST_PIXELS, Picture, Texture};
 pub use sea::{Ripple, Sea};
 pub use sheet::{Relief, Sheet};
+pub use sky::Sky;
 pub use slide::Slide;
 pub use wave::{Wave, WaveAt};
 pub use written::Written;
@@ -94,6 +96,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Sorted by name.
     pub lights: Vec<Light>,
+    /// What the eye sees where nothing is.
+    pub sky: Option<Sky>,
     /// What of all this came from glTF files, sorted by name.
     pub imports: Vec<Import>,
     /// The time, s, at which all this is so; of a scene that stands still, 0.

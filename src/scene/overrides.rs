@@ -116,10 +116,13 @@ fn imported<'k>(tree: &DeTable, key: &'k str) -> Option<(&'k str, &'k str)> {
 /// Where a key asks for another kind than the one its thing is of: the thing, its kind, and the one asked for.
 fn other_kind(tree: &DeTable, key: &str) -> Option<(String, &'static str, String)> {
     let names: Vec<&str> = key.split('.').collect();
-    let [family, thing, asked, ..] = names[..] else { return None };
-    let held = kind_in(child(child(Some(tree), family), thing)?)?;
-    let kind = asked != held && KINDS.contains(&asked) && keys(&[family, thing]).contains(&asked);
-    kind.then(|| (format!("{family}.{thing}"), held, asked.to_owned()))
+    // `lights.sun` is of a kind, and so is `sky`.
+    (1..names.len()).find_map(|at| {
+        let (thing, asked) = (&names[..at], names[at]);
+        let held = kind_in(thing.iter().try_fold(tree, |table, name| child(Some(table), name))?)?;
+        let kind = asked != held && KINDS.contains(&asked) && keys(thing).contains(&asked);
+        kind.then(|| (thing.join("."), held, asked.to_owned()))
+    })
 }
 
 /// Sets a value; tables on the way that are not there are made.

@@ -18,7 +18,7 @@ pub struct Picture {
     pub width: usize,
     /// Pixels down.
     pub height: usize,
-    /// Of each pixel, linear red, green and blue, 0 to 1.
+    /// Of each pixel, linear red, green and blue: of a texture or a slide 0 to 1, of a sky W/m²/sr.
     pub pixels: Vec<[f32; 3]>,
 }
 

@@ -34,7 +34,7 @@ const EV_STEP: f64 = 0.5;
 
 /// Keys, what they do, and that in words.
 const TABLE: [(&str, Action, &str); 13] = [
-    ("l", Action::NextLayer, "next layer; 1 to 6: that layer"),
+    ("l", Action::NextLayer, "next layer; 1 to 7: that layer"),
     ("m", Action::NextMethod, "next method, and none"),
     ("t", Action::Time(TIME_STEP), "0.1 s later"),
     ("T", Action::Time(-TIME_STEP), "0.1 s earlier"),
@@ -92,8 +92,8 @@ mod tests {
 
     #[test]
     fn digits_are_layers_and_the_rest_is_nothing() {
-        let layers: Vec<_> = ["1", "6", "0", "7", "11", "x", ""].map(typed).into();
-        assert_eq!(layers[..2], [Some(Action::Layer(0)), Some(Action::Layer(5))]);
+        let layers: Vec<_> = ["1", "7", "0", "8", "11", "x", ""].map(typed).into();
+        assert_eq!(layers[..2], [Some(Action::Layer(0)), Some(Action::Layer(6))]);
         assert!(layers[2..].iter().all(Option::is_none), "{layers:?}");
     }
 

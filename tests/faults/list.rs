@@ -33,6 +33,20 @@ pub static FAULTS: &[Fault] = &[
         check: &THROUGH_WATER,
     },
     Fault {
+        name: "n² of the sky in water dropped",
+        file: "eye/sky.glsl",
+        old: "radiance * n * n",
+        new: "radiance",
+        check: &EVEN_SKY,
+    },
+    Fault {
+        name: "the sky not weighed",
+        file: "eye/trace.frag",
+        old: "b.share * sky_seen(",
+        new: "sky_seen(",
+        check: &EVEN_SKY,
+    },
+    Fault {
         name: "index inverted",
         file: "shared/interface.glsl",
         old: "float eta = n_from / n_to;",

@@ -50,7 +50,9 @@ pub const READERS: [Reader; 5] = [
     Reader {
         ending: "toml",
         parts: Parts::Words,
-        seeds: || Scene::shipped().map(|(name, _)| text_of(name).into_bytes()).collect(),
+        seeds: || {
+            Scene::shipped().map(|(name, _)| text_of(name)).chain([under_a_sky()]).map(String::into_bytes).collect()
+        },
         // The tree of the text is held three times (as parsed, as resolved, as text again), some 150 bytes a short key.
         multiple: 1000,
         read: |path| {
@@ -112,6 +114,10 @@ pub fn go_on(found: Found) {
         let job = Job { scene: Arc::new(*scene), providers, settings: Settings::default(), camera, size: [8, 8] };
         let _ = plan(&job).map_err(|error| error.to_string());
     }
+}
+
+fn under_a_sky() -> String {
+    text_of("null") + "\n[sky.gradient]\nzenith = [0.1, 0.2, 0.4]\nhorizon = 1\nground = 0\nup = [0, 1, 0]\n"
 }
 
 fn text_of(name: &str) -> String {

@@ -26,6 +26,7 @@ mod photons;
 mod products;
 mod shapes;
 mod sheets;
+mod sky;
 mod slides;
 mod textures;
 mod tracers;

@@ -6,6 +6,7 @@ use nephroid::{
         accel,
         account::AccountRow,
         eye::FrameData,
+        sky::{SkyGradient, SkyImage},
         water::{RippleData, WaterData, WaterSine, WaterVertex, WaterWave},
     },
     store::Store,
@@ -39,6 +40,8 @@ fn offsets_agree() {
         host!("WaterWave", WaterWave { middle, unit, phase, wave_size, factor, vertex_size, octaves }),
         host!("WaterVertex", WaterVertex { height, normal }),
         host!("Ripple", RippleData { number, amplitude, phase }),
+        host!("SkyGradient", SkyGradient { up, zenith, horizon, ground }),
+        host!("SkyImage", SkyImage { size, right, up, ahead }),
         host!("View", ViewData { origin, x0, right, x1, up, y0, forward, y1, near, far, perspective, pad }),
     ];
     let defines: Vec<_> = [
@@ -63,7 +66,8 @@ fn offsets_agree() {
         let more = [(kind, "1"), ("WATER_ACROSS", "4u"), ("WATER_ALONG", "4u")].into_iter().chain(grid);
         ("waves/inverse_rays.comp", more.map(|(a, b)| (a.to_owned(), b.to_owned())).collect())
     });
-    for (file, more) in plain.into_iter().chain(waters) {
+    let skies = ["SKY_GRADIENT", "SKY_IMAGE"].map(|kind| ("eye/sky.frag", vec![("SKY".to_owned(), kind.to_owned())]));
+    for (file, more) in plain.into_iter().chain(waters).chain(skies) {
         let defines = [defines.clone(), more].concat();
         let words = Sources::default().compile(file, &defines, &provided, &Store::none()).unwrap();
         for m in Reflection::of(&words).unwrap().members {

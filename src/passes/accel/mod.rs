@@ -54,7 +54,7 @@ pub struct SceneArrays {
     pub materials: Vec<Material>,
     /// As [`Scene::lights`], those without a size.
     pub lights: Vec<Light>,
-    /// Of the materials and slides.
+    /// Of the materials, the slides and the sky.
     pub textures: Arc<Textures>,
     /// What spots project; empty where none does.
     pub slides: Vec<Slide>,

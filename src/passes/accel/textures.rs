@@ -1,8 +1,8 @@
-//! Textures and slides as the shaders read them: the pixels of all pictures in one array.
+//! Textures, slides and the sky as the shaders read them: the pixels of all pictures of a use in one array.
 use std::sync::Arc;
 
 use super::{AccelError, Slide, Texture, check_count};
-use crate::scene::{Beam, LightKind, MOST_PIXELS, MaterialKind, Picture, Scene, Slide as SceneSlide};
+use crate::scene::{Beam, LightKind, MOST_PIXELS, MaterialKind, Picture, Scene, Sky, Slide as SceneSlide};
 
 /// Of a scene; empty where it has none.
 #[derive(Clone, Debug, Default)]
@@ -15,6 +15,8 @@ pub struct Textures {
     pub of_material: Vec<u32>,
     /// Pixels of the pictures that spots project, in the order of the lights; as `texels`.
     pub slides: Arc<[u8]>,
+    /// Pixels of a sky that is a picture; as `texels`.
+    pub sky: Arc<[u8]>,
 }
 
 impl Textures {
@@ -48,6 +50,9 @@ impl Textures {
             slides(scene).flat_map(|(.., slide)| slide.picture.pixels.iter().copied()).collect();
         check_count("pixels of projected images", slides.len(), MOST_PIXELS)?;
         textures.slides = bytemuck::cast_slice(&slides).into();
+        if let Some(Sky::Image { picture, .. }) = &scene.sky {
+            textures.sky = bytemuck::cast_slice(&picture.pixels).into();
+        }
         Ok(textures)
     }
 }

@@ -16,6 +16,8 @@ use std::{collections::BTreeMap, f64::consts::PI};
 pub static FLAT_WATER: Check = Check { name: "flat water, band by band", bound: EVEN, figure: below_water };
 /// Radiance of that floor seen straight through the water, by closed form.
 pub static THROUGH_WATER: Check = Check { name: "floor seen through water", bound: EVEN, figure: through_water };
+/// A sheet of clear water vanishes in an even sky: R L + (1 − R) / n² · n² L.
+pub static EVEN_SKY: Check = Check { name: "water in an even sky", bound: SKY, figure: in_an_even_sky };
 /// Caustic and shadowed direct light of a sphere of index 1 under a slanted sun, in the sun's own view.
 pub static NULL: Check = Check { name: "null test", bound: VANISHED, figure: null };
 /// Direct light of a lamp, by closed form, and darkness in the shadow.
@@ -32,6 +34,9 @@ const VANISHED: f64 = 2e-3;
 const ROUNDING: f64 = 2e-5;
 /// Of the brightest pixel. Measured 5e-8; allowed some ten roundings of float32.
 const PRODUCTS: f64 = 1e-6;
+
+/// Of the sky. Some ten roundings of float32, one of them of an n² of its inverse's square.
+const SKY: f64 = 5e-6;
 
 /// Texels a side of the maps here.
 const MAP: u32 = 64;
@@ -71,6 +76,15 @@ fn through_water(gpu: &Gpu, sources: &Sources) -> f64 {
     let passes = 1.0 - fresnel(1.0, 1.0, 1.33);
     let exact = passes / (1.33 * 1.33) * flat_water(1.33, 1.0, 1.0, 0.0, 1.0) * 0.8 / PI;
     mean(&picture.mean("radiance")) / exact - 1.0
+}
+
+/// The floor is moved aside: what goes into the water leaves the scene in it.
+fn in_an_even_sky(gpu: &Gpu, sources: &Sources) -> f64 {
+    let sky = [("sky.gradient.zenith", "2"), ("sky.gradient.horizon", "2"), ("objects.floor.center", "[1000, -1, 0]")];
+    let mut job = job_of(scene("flat-water", &sky), &[ONE], "main", [16; 2]);
+    job.providers = Providers::default();
+    let picture = render(gpu, sources, &job);
+    worst(picture.layer("sky").iter().map(|&l| f64::from(l) / 2.0 - 1.0))
 }
 
 fn null(gpu: &Gpu, sources: &Sources) -> f64 {

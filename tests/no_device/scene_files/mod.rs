@@ -9,6 +9,7 @@ mod motion;
 mod schema;
 mod shapes;
 mod sheets;
+mod sky;
 mod sound;
 mod textures;
 

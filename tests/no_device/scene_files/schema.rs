@@ -23,6 +23,8 @@ const WRONG: &[(&str, &str, &str)] = &[
     ("an index of no known material", "ior = 1.5", "ior = \"galss\""),
     ("an index by no known equation", "ior = 1.5", "ior = { sellmeier = [1, 2] }"),
     ("a key without a time", "material = \"glass\"", "material = \"glass\"\nmotion.scale = [{ value = 2 }]"),
+    ("a sky of no kind", "[region]", "[sky]\n[region]"),
+    ("a sky of two kinds", "[region]", "[sky]\ngradient = { zenith = 1, horizon = 1 }\nimage = { file = \"s.exr\" }\n[region]"),
     ("an unknown key of motion", "material = \"glass\"", "material = \"glass\"\nmotion.size = []"),
 ];
 

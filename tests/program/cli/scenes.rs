@@ -44,6 +44,19 @@ fn a_description_holds_what_is_in_the_file() {
 }
 
 #[test]
+fn a_sky_is_told_where_there_is_one() {
+    let of = |format: &str| nephroid(&format!("scenes sea --format {format}")).ok();
+    for format in ["table", "csv", "md"] {
+        let out = of(format).out;
+        assert!(out.contains("gradient") && out.contains("zenith [0.02, 0.05, 0.13], horizon"), "{out}");
+    }
+    let sky = &of("json").json()["sky"];
+    assert_eq!([&sky["kind"], &sky["up"][1]], [&serde_json::json!("gradient"), &serde_json::json!(1.0)]);
+    assert_eq!(sky["zenith"], serde_json::json!([0.02, 0.05, 0.13]));
+    assert!(nephroid("scenes null --format json").ok().json()["sky"].is_null());
+}
+
+#[test]
 fn a_lamp_has_a_power_and_the_sun_has_none() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("lamp.toml");
