@@ -1,5 +1,6 @@
 //! The method `waves`: each variant is what its equations say, and has an answer everywhere.
 
+mod beams;
 #[path = "../common/mod.rs"]
 mod common;
 mod cross;

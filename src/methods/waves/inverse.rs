@@ -160,20 +160,23 @@ fn lights(work: &Work<'_>, water: &Water) -> Result<Vec<WaterLight>, PlanError> 
     let parts = work.settings.whole(&light::AREA_SAMPLES);
     let depths = shade::depths(work.scene, water).map(|depth| depth as f32);
     let mut all = Vec::new();
+    // Those without a size, in their order; they alone know their slides.
+    let mut plain = work.arrays.lights.iter();
     for light in &work.scene.lights {
         let (kinds, radius) = match light.kind {
             LightKind::Sun { radius, .. } if radius <= DISC => (vec![light.kind.clone()], radius),
             _ => (light.kind.samples(parts), 0.0),
         };
+        let own = if light.kind.has_area() { None } else { plain.next() };
         for kind in kinds {
-            all.push(WaterLight { depths, ..water_light(work.scene, &light.name, &kind, radius)? });
+            let from = own.copied().map_or_else(|| accel::light(work.scene, &light.name, &kind), Ok)?;
+            all.push(WaterLight { depths, ..water_light(from, &kind, radius) });
         }
     }
     Ok(all)
 }
 
-fn water_light(scene: &Scene, name: &str, kind: &LightKind, radius: f64) -> Result<WaterLight, PlanError> {
-    let light = accel::light(scene, name, kind)?;
+fn water_light(light: accel::Light, kind: &LightKind, radius: f64) -> WaterLight {
     let (x, y) = match kind {
         LightKind::Sun { direction, .. } => {
             let x = direction.any_orthonormal_vector();
@@ -182,7 +185,7 @@ fn water_light(scene: &Scene, name: &str, kind: &LightKind, radius: f64) -> Resu
         _ => Default::default(),
     };
     let [x, y] = [x, y].map(|axis: DVec3| axis.as_vec3().to_array());
-    Ok(WaterLight { light, radius: radius as f32, x, y, depths: [0.0; 2] })
+    WaterLight { light, radius: radius as f32, x, y, depths: [0.0; 2] }
 }
 
 /// Cells of rays and the levels of bounds above them.
