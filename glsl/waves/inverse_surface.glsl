@@ -44,7 +44,9 @@ Place place_of(vec3 p, vec3 n) {
         vec3 q = p - eye.origin;
         float r = sqrt(dot(q, q));
         way = r > 0.0 ? q / r : eye.forward;
-        side *= r;
+        // The window is of tangents: what it sees grows with the depth. Beside it, which mirrors show, no depth is less than in its corner.
+        vec2 corner = max(abs(vec2(eye.x0, eye.y0)), abs(vec2(eye.x1, eye.y1)));
+        side *= max(dot(q, eye.forward), r / sqrt(1.0 + dot(corner, corner)));
     }
     float cosine = dot(way, n);
     cosine = cosine < 0.0 ? min(cosine, -GRAZING) : max(cosine, GRAZING);

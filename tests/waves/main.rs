@@ -4,6 +4,7 @@ mod beams;
 #[path = "../common/mod.rs"]
 mod common;
 mod cross;
+mod eye;
 mod hard;
 mod inverse;
 mod model;
