@@ -12,8 +12,7 @@ struct Water {
     vec3 v; // unit
     vec3 n; // unit, out of the water
     vec2 half_size; // m along u and v
-    vec3 ior;        // of each band
-    vec3 absorption; // 1/m
+    vec3 ior; // of each band
 };
 
 layout(set = 0, binding = 33, scalar) readonly buffer WaterBlock { Water data; } water;

@@ -168,7 +168,7 @@ vec3 triangle_light(WaterLight from, WaterRay rays[3], Place at) {
     if (is_blocked(rays, at)) return vec3(0.0);
 #endif
     float flux = triangle_flux(from, rays[0].start, rays[1].start, rays[2].start);
-    return flux * from.light.power * passes * density * exp(-water_frame().absorption * metres);
+    return flux * from.light.power * passes * density * exp(-from.attenuation * metres);
 }
 
 vec3 cell_light(WaterLight from, uint light, ivec2 cell, Place at) {

@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::{shade, with};
+use super::{shade, suns, with};
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder},
     passes::{
@@ -56,6 +56,7 @@ struct WaterLight {
     x: [f32; 3],
     y: [f32; 3],
     depths: [f32; 2],
+    attenuation: [f32; 3],
 }
 
 /// What its stages share.
@@ -159,6 +160,7 @@ pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
 fn lights(work: &Work<'_>, water: &Water) -> Result<Vec<WaterLight>, PlanError> {
     let parts = work.settings.whole(&light::AREA_SAMPLES);
     let depths = shade::depths(work.scene, water).map(|depth| depth as f32);
+    let attenuation = suns::attenuation(work.scene, water, work.settings).as_vec3().to_array();
     let mut all = Vec::new();
     // Those without a size, in their order; they alone know their slides.
     let mut plain = work.arrays.lights.iter();
@@ -170,7 +172,7 @@ fn lights(work: &Work<'_>, water: &Water) -> Result<Vec<WaterLight>, PlanError> 
         let own = if light.kind.has_area() { None } else { plain.next() };
         for kind in kinds {
             let from = own.copied().map_or_else(|| accel::light(work.scene, &light.name, &kind), Ok)?;
-            all.push(WaterLight { depths, ..water_light(from, &kind, radius) });
+            all.push(WaterLight { depths, attenuation, ..water_light(from, &kind, radius) });
         }
     }
     Ok(all)
@@ -185,7 +187,7 @@ fn water_light(light: accel::Light, kind: &LightKind, radius: f64) -> WaterLight
         _ => Default::default(),
     };
     let [x, y] = [x, y].map(|axis: DVec3| axis.as_vec3().to_array());
-    WaterLight { light, radius: radius as f32, x, y, depths: [0.0; 2] }
+    WaterLight { light, radius: radius as f32, x, y, depths: [0.0; 2], attenuation: [0.0; 3] }
 }
 
 /// Cells of rays and the levels of bounds above them.
