@@ -47,6 +47,9 @@ const BOUNDS_BYTES: u64 = 32;
 /// The largest buffer that every device binds.
 const BUFFER_MOST: u64 = 1 << 27;
 
+/// Why a scene with water shows nothing.
+const NO_LIGHT: &str = "there is no light with any power";
+
 /// `WaterLight` of the shaders.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -135,8 +138,21 @@ impl Inverse {
     }
 }
 
+/// Why there is nothing to light; of a scene that moves, lights may have power later.
+pub fn nothing(scene: &Scene) -> Option<&'static str> {
+    (is_dark(scene) && !scene.moves()).then_some(NO_LIGHT)
+}
+
+fn is_dark(scene: &Scene) -> bool {
+    scene.lights.iter().all(|light| light.kind.power() == [0.0; 3])
+}
+
 /// What its picture does not show.
 pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
+    let dry = water::waters(scene).next().is_none().then_some(suns::NO_WATER);
+    if let Some(reason) = dry.or(is_dark(scene).then_some(NO_LIGHT)) {
+        return vec![format!("waves show nothing: {reason}")];
+    }
     let mut all = Vec::new();
     let class = light::paths(scene, settings);
     if class != PathClass::Transmit1 {

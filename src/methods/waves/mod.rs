@@ -211,8 +211,8 @@ impl Method for Waves {
 
 /// The variant of all light.
 fn inverse(work: &mut Work<'_>) -> Result<Planned, PlanError> {
-    if work.scene.lights.is_empty() {
-        return Ok(Planned::LeftOut("there is no light"));
+    if let Some(reason) = inverse::nothing(work.scene) {
+        return Ok(Planned::LeftOut(reason));
     }
     Ok(match inverse::plan(work)? {
         Some(surface) => Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }),
