@@ -119,7 +119,7 @@ static CHAIN: &[Link] = &[
     Link { shown: Shown::PathClass, step: "path class", moved_by: &["light.paths"] },
     Link {
         shown: Shown::AsAsked,
-        step: "light from straight above alone",
+        step: "variant",
         moved_by: &[
             "waves.variant",
             "waves.mesh",

@@ -164,7 +164,7 @@ fn a_picture_right_up_to_a_scale_is_fitted() {
     let chain = bench.chain_of("waves", "water", &[], &BUDGET);
     assert_eq!(
         chain.steps.iter().map(|step| step.name.as_str()).collect::<Vec<_>>(),
-        ["path class", "light from straight above alone"]
+        ["path class", "variant"]
     );
     let fitted = chain.fitted.expect("the picture is right only up to a scale");
     assert!(fitted.scale > 0.0 && fitted.relmse.value <= chain.whole.relmse.value, "{fitted:?}");
