@@ -162,10 +162,7 @@ fn every_setting_of_light_and_method_has_its_step() {
 fn a_picture_right_up_to_a_scale_is_fitted() {
     let bench = Bench::new();
     let chain = bench.chain_of("waves", "water", &[], &BUDGET);
-    assert_eq!(
-        chain.steps.iter().map(|step| step.name.as_str()).collect::<Vec<_>>(),
-        ["path class", "variant"]
-    );
+    assert_eq!(chain.steps.iter().map(|step| step.name.as_str()).collect::<Vec<_>>(), ["path class", "variant"]);
     let fitted = chain.fitted.expect("the picture is right only up to a scale");
     assert!(fitted.scale > 0.0 && fitted.relmse.value <= chain.whole.relmse.value, "{fitted:?}");
     assert!(bench.chain("diffuse", &[], &BUDGET).fitted.is_none());
