@@ -132,6 +132,7 @@ static CHAIN: &[Link] = &[
             "waves.absorbed",
             "waves.screen_depth",
             "waves.cells",
+            "light.area_samples",
             "eye.samples",
         ],
     },
@@ -167,6 +168,10 @@ impl Method for Waves {
 
     fn is_relative(&self, settings: &Settings) -> bool {
         settings.choice(&VARIANT) != "inverse"
+    }
+
+    fn reads(&self) -> &'static [&'static str] {
+        &["light.area_samples"]
     }
 
     fn stages(&self) -> &'static [&'static str] {

@@ -147,7 +147,8 @@ fn other_photons_tell_the_same() {
 fn every_setting_of_light_and_method_has_its_step() {
     for method in methods::ALL {
         let keys: Vec<_> = method.chain().iter().flat_map(|link| link.moved_by).copied().collect();
-        let theirs = |key: &str| method.shoots() && key.starts_with("light.") || key.starts_with(method.name());
+        let of_light = |key: &str| key.starts_with("light.") && (method.shoots() || method.reads().contains(&key));
+        let theirs = |key: &str| of_light(key) || key.starts_with(method.name());
         for setting in renderer::all_settings().iter().filter(|s| theirs(s.key())) {
             let count = keys.iter().filter(|key| **key == setting.key()).count();
             assert_eq!(count, 1, "{} in the chain of {}", setting.key(), method.name());
