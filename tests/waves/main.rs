@@ -1,10 +1,12 @@
 //! The method `waves`: each variant is what its equations say, and has an answer everywhere.
 
-mod absorbed;
+mod bands;
 mod beams;
+mod chosen;
 #[path = "../common/mod.rs"]
 mod common;
 mod cross;
+mod discs;
 mod eye;
 mod hard;
 mod inverse;
