@@ -12,8 +12,7 @@ struct Water {
     vec3 v; // unit
     vec3 n; // unit, out of the water
     vec2 half_size; // m along u and v
-    vec3 ior;        // of each band
-    vec3 absorption; // 1/m
+    vec3 ior; // of each band
 };
 
 layout(set = 0, binding = 33, scalar) readonly buffer WaterBlock { Water data; } water;
@@ -163,18 +162,5 @@ vec2 water_gradient(vec2 at) {
 }
 
 #endif
-
-// On the surface, in the world.
-vec3 water_point(vec2 at) {
-    Water w = water.data;
-    return w.center + at.x * w.u + at.y * w.v + water_height(at) * w.n;
-}
-
-// Unit, out of the water.
-vec3 water_normal(vec2 at) {
-    Water w = water.data;
-    vec2 slope = water_gradient(at);
-    return (w.n - slope.x * w.u - slope.y * w.v) / sqrt(1.0 + dot(slope, slope));
-}
 
 #endif

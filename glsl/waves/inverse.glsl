@@ -36,6 +36,7 @@ struct WaterLight {
     vec3 x; // axes of the disc
     vec3 y;
     vec2 depths; // of all receivers below the plane, m
+    vec3 attenuation; // by the water, 1/m
 };
 
 layout(set = 0, binding = 35, scalar) INVERSE_RAYS buffer WaterRays { WaterRay at[]; } water_rays;

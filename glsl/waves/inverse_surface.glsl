@@ -44,7 +44,9 @@ Place place_of(vec3 p, vec3 n) {
         vec3 q = p - eye.origin;
         float r = sqrt(dot(q, q));
         way = r > 0.0 ? q / r : eye.forward;
-        side *= r;
+        // The window is of tangents: what it sees grows with the depth. Beside it, which mirrors show, no depth is less than in its corner.
+        vec2 corner = max(abs(vec2(eye.x0, eye.y0)), abs(vec2(eye.x1, eye.y1)));
+        side *= max(dot(q, eye.forward), r / sqrt(1.0 + dot(corner, corner)));
     }
     float cosine = dot(way, n);
     cosine = cosine < 0.0 ? min(cosine, -GRAZING) : max(cosine, GRAZING);
@@ -166,7 +168,7 @@ vec3 triangle_light(WaterLight from, WaterRay rays[3], Place at) {
     if (is_blocked(rays, at)) return vec3(0.0);
 #endif
     float flux = triangle_flux(from, rays[0].start, rays[1].start, rays[2].start);
-    return flux * from.light.power * passes * density * exp(-water_frame().absorption * metres);
+    return flux * from.light.power * passes * density * exp(-from.attenuation * metres);
 }
 
 vec3 cell_light(WaterLight from, uint light, ivec2 cell, Place at) {

@@ -4,12 +4,13 @@ use super::{
     Picture,
     compare::Sides,
     compare_scene::{difference, paths},
-    picture::FILTERED,
 };
 use crate::image::Layer;
 
 /// Pixels across from which one sample each is fine enough to be judged.
 const FINE: usize = 512;
+/// What a method gives.
+const CAUSTIC: &str = "irradiance.caustic";
 
 /// In words, each with the file that it is about.
 pub fn warnings(image: &Picture, reference: &Picture, sides: &Sides) -> Vec<String> {
@@ -23,7 +24,7 @@ pub fn warnings(image: &Picture, reference: &Picture, sides: &Sides) -> Vec<Stri
         sides.variance.and_then(|v| no_numbers(reference, v, &sides.judged, |v| v.is_finite() && v >= 0.0)),
         other_scene(image, reference),
         other_paths(image, reference),
-        one_sample(image, reference),
+        one_sample(image, reference, sides.x.name()),
     ];
     all.into_iter().flatten().collect()
 }
@@ -56,15 +57,17 @@ fn other_paths(image: &Picture, reference: &Picture) -> Option<String> {
 }
 
 /// The truth is box-filtered over each pixel: against it, one sample has an error that is no fault of the method's.
-fn one_sample(image: &Picture, reference: &Picture) -> Option<String> {
+fn one_sample(image: &Picture, reference: &Picture, layer: &str) -> Option<String> {
     let [ours, theirs] = [image, reference].map(|p| p.about.get("settings.eye.samples").is_some_and(|k| k == "1"));
     let [width, height] = image.size();
-    let filtered = image.about.get("surface").is_some_and(|s| s == FILTERED);
-    (ours && !theirs && !filtered && width.max(height) < FINE).then(|| {
+    (ours && !theirs && !image.is_filtered(layer) && width.max(height) < FINE).then(|| {
+        // Where the method's own layer needs one alone, that is what is taken where nothing is set.
+        let remedy =
+            if image.is_filtered(CAUSTIC) { "with --set eye.samples=4" } else { "without --set eye.samples=1" };
         let file = &image.file;
         format!(
             "{file}: one eye sample a pixel at {width}x{height} adds an error that is not the method's: render the \
-             image again without --set eye.samples=1"
+             image again {remedy}"
         )
     })
 }

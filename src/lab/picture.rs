@@ -70,7 +70,17 @@ impl Picture {
 
     /// Whether a layer is right only up to a scale.
     pub(super) fn is_relative(&self, layer: &str) -> bool {
-        ["irradiance.caustic", "caustic"].contains(&layer) && self.about.get("surface").is_some_and(|s| s == RELATIVE)
+        self.is_of_surface(layer, RELATIVE)
+    }
+
+    /// Whether one eye sample has a layer's mean of each pixel.
+    pub(super) fn is_filtered(&self, layer: &str) -> bool {
+        self.is_of_surface(layer, FILTERED)
+    }
+
+    /// Whether a layer has what the slot `surface` gives alone, and that is such.
+    fn is_of_surface(&self, layer: &str, such: &str) -> bool {
+        ["irradiance.caustic", "caustic"].contains(&layer) && self.about.get("surface").is_some_and(|s| s == such)
     }
 
     /// Whether each pixel may be judged: no part of it is masked.

@@ -156,6 +156,10 @@ pub trait Method: Sync {
     fn eye_samples(&self, _: &Settings) -> Option<u32> {
         None
     }
+    /// Settings of light that it reads, of a method that shoots no photons, besides the class of paths.
+    fn reads(&self) -> &'static [&'static str] {
+        &[]
+    }
     /// Its stages, which `plan` lists as left out where the scene cannot show what they make.
     fn stages(&self) -> &'static [&'static str];
     /// What its picture does not show well, and the remedy.

@@ -20,7 +20,6 @@ pub struct WaterData {
     pub n: [f32; 3],
     pub half_size: [f32; 2],
     pub ior: [f32; 3],
-    pub absorption: [f32; 3],
 }
 
 /// `WaterSine` of the shaders.
@@ -122,7 +121,7 @@ impl Water {
         let object = waters(scene).next()?;
         let shape = &scene.objects[object].shape;
         let frame = frame(shape)?;
-        let MaterialKind::Dielectric { ior, absorption } = scene.materials[scene.objects[object].material].kind else {
+        let MaterialKind::Dielectric { ior, .. } = scene.materials[scene.objects[object].material].kind else {
             return None;
         };
         let [u, v] = [frame.u, frame.v].map(DVec3::normalize_or_zero);
@@ -134,7 +133,6 @@ impl Water {
             n: f32s(frame.normal()),
             half_size: DVec2::new(frame.u.length(), frame.v.length()).as_vec2().to_array(),
             ior: f32s(ior.into()),
-            absorption: f32s(absorption.into()),
         };
         let data = plan.upload("water", &[data]);
         let (defines, buffer) = match shape {

@@ -35,7 +35,7 @@ fn offsets_agree() {
         host!("Light", accel::Light { kind, vector, power, media, axis, inner, outer, slide }),
         host!("AccountRow", AccountRow { counts, bent, flux, other, absorbed }),
         host!("FrameData", FrameData { eye, time, index, seed, eye_media }),
-        host!("Water", WaterData { center, u, v, n, half_size, ior, absorption }),
+        host!("Water", WaterData { center, u, v, n, half_size, ior }),
         host!("WaterSine", WaterSine { amplitude, number, phase }),
         host!("WaterWave", WaterWave { middle, unit, phase, wave_size, factor, vertex_size, octaves }),
         host!("WaterVertex", WaterVertex { height, normal }),

@@ -1,5 +1,7 @@
 //! Where equations end: no pixel may be without a number, and the validation layers say nothing (`picture` holds both).
 
+use nephroid::{methods::Outcome, passes::account::Account, renderer::plan};
+
 use crate::{
     PAPER, VARIANTS,
     common::{gpu, picture::picture},
@@ -59,4 +61,30 @@ fn a_camera_in_the_water_sees_it_and_twice_the_same() {
     let [once, twice] = [0, 1].map(|_| picture(&gpu, &job));
     assert!(once.sum("irradiance.caustic") + once.sum("caustic") > 0.0);
     assert_eq!(once.layers, twice.layers);
+}
+
+/// Black pictures are warned of by every variant, and nothing is planned for them.
+#[test]
+fn what_shows_nothing_is_said() {
+    const DARK: (&str, &str) = ("scene.lights.sun.directional.irradiance", "0");
+    for variant in ["inverse", "pixel"] {
+        for (scene, set, why) in [
+            ("diffuse", None, Some("no water")),
+            ("flat-water", Some(DARK), Some("with any power")),
+            ("flat-water", None, None),
+        ] {
+            let set: Vec<_> = [("waves.variant", variant)].into_iter().chain(set).collect();
+            let job = waves(scene, &set, "region", SIZE);
+            let (scene, settings, account) = (&*job.scene, &job.settings, &Account::default());
+            let shown = Outcome { scene, receiver: &scene.region, settings, account };
+            let told = job.providers.surface.expect("waves").warnings(&shown);
+            let nothing = told.iter().find(|line| line.contains("waves show nothing"));
+            let left = plan(&job).unwrap().plan.left_out;
+            let left = left.iter().find(|left| left.name == "eye/surface");
+            for said in [nothing.map(String::as_str), left.map(|left| left.reason.as_str())] {
+                assert_eq!(said.is_some(), why.is_some(), "{variant}: {told:?}");
+                assert!(said.zip(why).is_none_or(|(said, why)| said.contains(why)), "{variant}: {said:?}");
+            }
+        }
+    }
 }

@@ -1,8 +1,13 @@
 //! The method `waves`: each variant is what its equations say, and has an answer everywhere.
 
+mod bands;
+mod beams;
+mod chosen;
 #[path = "../common/mod.rs"]
 mod common;
 mod cross;
+mod discs;
+mod eye;
 mod hard;
 mod inverse;
 mod model;
@@ -117,9 +122,16 @@ fn what_cannot_be_is_refused_or_left_out_with_the_reason() {
     };
     let side = refused(&[("waves.variant", "texture"), ("waves.side", "100")]);
     assert!(side.contains("waves.side=100") && side.contains("use 64 or 128"), "{side}");
-    for variant in ["texture", "vertex"] {
+    for variant in ["inverse", "texture", "vertex"] {
         let screen = refused(&[("waves.variant", variant), ("waves.screen_depth", "on")]);
         assert!(screen.contains("no screen is known"), "{screen}");
+    }
+    for (variant, key, value) in
+        [("inverse", "waves.sun_width", "5"), ("inverse", "waves.sun_edge", "1"), ("listing", "waves.absorbed", "0.2")]
+    {
+        let unused = refused(&[("waves.variant", variant), (key, value)]);
+        assert!(unused.contains(&format!("{key}={value} with waves.variant={variant}")), "{unused}");
+        assert!(unused.contains(&format!("do not set {key}")), "{unused}");
     }
     for (scene, why) in [("glass-sphere", "no water"), ("diffuse", "no water"), ("gem", "no water")] {
         let plan = plan(&waves(scene, &[], "region", [8, 8])).unwrap().plan;

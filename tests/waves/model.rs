@@ -15,8 +15,12 @@ pub struct Model {
     ior: f64,
     /// 1/m
     attenuation: f64,
-    /// rad, at half brightness; its edge reaches as far again.
+    /// rad, at half brightness.
     sun: f64,
+    /// How much of that, on both sides of it, is the sun's edge.
+    pub edge: f64,
+    /// Where the shortcut's sun map lies, m.
+    pub distance: f64,
 }
 
 impl Model {
@@ -30,11 +34,21 @@ impl Model {
         let half = DVec2::new(x.length() * corner.x, y.length() * corner.y);
         let axes = [x, y, z].map(DVec3::normalize);
         let (ior, attenuation) = (1.33, 0.24); // as the file says
-        Self { wave, center: to_world.translation, axes, half, ior, attenuation, sun: 0.5 * sun_width.to_radians() }
+        Self {
+            wave,
+            center: to_world.translation,
+            axes,
+            half,
+            ior,
+            attenuation,
+            sun: 0.5 * sun_width.to_radians(),
+            edge: 1.0,
+            distance: 0.8,
+        }
     }
 
     fn sun_map(&self, angle: f64) -> f64 {
-        let t = (1.0 - angle / (2.0 * self.sun)).clamp(0.0, 1.0);
+        let t = (0.5 + 0.5 * (1.0 - angle / self.sun) / self.edge).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     }
 
@@ -65,11 +79,11 @@ impl Model {
         self.dimmed(self.below(self.wave.gradient(at)), self.wave.height(at) - above)
     }
 
-    /// The same without refraction, the map 0.8 m away.
+    /// The same without refraction.
     pub fn shortcut(&self, p: DVec3) -> f64 {
         let (at, above) = self.place(p);
         let depth = self.wave.height(at) - above;
-        self.dimmed(self.sun_map((self.wave.gradient(at).length() * depth).atan2(0.8)), depth)
+        self.dimmed(self.sun_map((self.wave.gradient(at).length() * depth).atan2(self.distance)), depth)
     }
 
     /// As printed, the screen's depth being `w`.

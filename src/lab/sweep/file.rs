@@ -175,14 +175,14 @@ fn check(written: &Written, parsed: &SweepFile) -> Result<(), SceneError> {
 }
 
 /// Whether a key is one of a method's points: settings of another method are not, nor are those of photons where it
-/// shoots none. Of all of them it would have the same picture.
+/// shoots none, but for what it says to read. Of all of them it would have the same picture.
 fn concerns(key: &str, method: &str) -> bool {
     let room = key.split('.').next().unwrap_or_default();
     if methods::ALL.iter().any(|known| known.name() == room) {
         return room == method;
     }
     let of_photons = room == "light" && key != light::PATHS.key;
-    !of_photons || methods::find(method).is_ok_and(|method| method.shoots())
+    !of_photons || methods::find(method).is_ok_and(|method| method.shoots() || method.reads().contains(&key))
 }
 
 /// Every key below `[set]`, in the order of the alphabet.

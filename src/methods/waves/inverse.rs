@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::{shade, with};
+use super::{shade, suns, with};
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder},
     passes::{
@@ -47,6 +47,9 @@ const BOUNDS_BYTES: u64 = 32;
 /// The largest buffer that every device binds.
 const BUFFER_MOST: u64 = 1 << 27;
 
+/// Why a scene with water shows nothing.
+const NO_LIGHT: &str = "there is no light with any power";
+
 /// `WaterLight` of the shaders.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -56,6 +59,7 @@ struct WaterLight {
     x: [f32; 3],
     y: [f32; 3],
     depths: [f32; 2],
+    attenuation: [f32; 3],
 }
 
 /// What its stages share.
@@ -134,8 +138,21 @@ impl Inverse {
     }
 }
 
+/// Why there is nothing to light; of a scene that moves, lights may have power later.
+pub fn nothing(scene: &Scene) -> Option<&'static str> {
+    (is_dark(scene) && !scene.moves()).then_some(NO_LIGHT)
+}
+
+fn is_dark(scene: &Scene) -> bool {
+    scene.lights.iter().all(|light| light.kind.power() == [0.0; 3])
+}
+
 /// What its picture does not show.
 pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
+    let dry = water::waters(scene).next().is_none().then_some(suns::NO_WATER);
+    if let Some(reason) = dry.or(is_dark(scene).then_some(NO_LIGHT)) {
+        return vec![format!("waves show nothing: {reason}")];
+    }
     let mut all = Vec::new();
     let class = light::paths(scene, settings);
     if class != PathClass::Transmit1 {
@@ -159,21 +176,25 @@ pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
 fn lights(work: &Work<'_>, water: &Water) -> Result<Vec<WaterLight>, PlanError> {
     let parts = work.settings.whole(&light::AREA_SAMPLES);
     let depths = shade::depths(work.scene, water).map(|depth| depth as f32);
+    let attenuation = suns::attenuation(work.scene, water, work.settings).as_vec3().to_array();
     let mut all = Vec::new();
+    // Those without a size, in their order; they alone know their slides.
+    let mut plain = work.arrays.lights.iter();
     for light in &work.scene.lights {
         let (kinds, radius) = match light.kind {
             LightKind::Sun { radius, .. } if radius <= DISC => (vec![light.kind.clone()], radius),
             _ => (light.kind.samples(parts), 0.0),
         };
+        let own = if light.kind.has_area() { None } else { plain.next() };
         for kind in kinds {
-            all.push(WaterLight { depths, ..water_light(work.scene, &light.name, &kind, radius)? });
+            let from = own.copied().map_or_else(|| accel::light(work.scene, &light.name, &kind), Ok)?;
+            all.push(WaterLight { depths, attenuation, ..water_light(from, &kind, radius) });
         }
     }
     Ok(all)
 }
 
-fn water_light(scene: &Scene, name: &str, kind: &LightKind, radius: f64) -> Result<WaterLight, PlanError> {
-    let light = accel::light(scene, name, kind)?;
+fn water_light(light: accel::Light, kind: &LightKind, radius: f64) -> WaterLight {
     let (x, y) = match kind {
         LightKind::Sun { direction, .. } => {
             let x = direction.any_orthonormal_vector();
@@ -182,7 +203,7 @@ fn water_light(scene: &Scene, name: &str, kind: &LightKind, radius: f64) -> Resu
         _ => Default::default(),
     };
     let [x, y] = [x, y].map(|axis: DVec3| axis.as_vec3().to_array());
-    Ok(WaterLight { light, radius: radius as f32, x, y, depths: [0.0; 2] })
+    WaterLight { light, radius: radius as f32, x, y, depths: [0.0; 2], attenuation: [0.0; 3] }
 }
 
 /// Cells of rays and the levels of bounds above them.

@@ -62,7 +62,8 @@ static SUN_WIDTH: Real = Real {
     // Of the paper's wave, most of what lies within 0.6 of its origin is then lit, and its crests and troughs stand out.
     default: Some(5.0),
     range: 0.0..=180.0,
-    doc: "width of the sun in the sun map, where it has half its brightness; 0: the scene's, or 0.53 where that has none",
+    doc: "width of the sun in the sun map, where it has half its brightness; 0: the scene's, or 0.53 where that has none; not with \
+          waves.variant = inverse, which has the scene's own suns",
 };
 
 static SUN_EDGE: Real = Real {
@@ -70,7 +71,8 @@ static SUN_EDGE: Real = Real {
     unit: "",
     default: Some(1.0),
     range: 0.0..=1.0,
-    doc: "how much of the sun's half width, on both sides of it, is its edge: 0: a sharp disc; 1: bright in the middle alone",
+    doc: "how much of the sun's half width, on both sides of it, is its edge: 0: a sharp disc; 1: bright in the middle alone; \
+          not with waves.variant = inverse",
 };
 
 static SUN_DISTANCE: Real = Real {
@@ -86,7 +88,8 @@ static ABSORBED: Real = Real {
     unit: "1/m",
     default: None,
     range: 0.0..=0.999,
-    doc: "share of the light that a metre of water takes (the paper: 0.2 to 0.23); else by the scene's absorption",
+    doc: "share of the light that a metre of water takes on its way (the paper: 0.2 to 0.23), of every band alike; else by the scene's \
+          absorption; not with waves.variant = listing, which knows no depth",
 };
 
 static SCREEN_DEPTH: Choice = Choice {
@@ -116,7 +119,7 @@ static CHAIN: &[Link] = &[
     Link { shown: Shown::PathClass, step: "path class", moved_by: &["light.paths"] },
     Link {
         shown: Shown::AsAsked,
-        step: "light from straight above alone",
+        step: "variant",
         moved_by: &[
             "waves.variant",
             "waves.mesh",
@@ -129,6 +132,7 @@ static CHAIN: &[Link] = &[
             "waves.absorbed",
             "waves.screen_depth",
             "waves.cells",
+            "light.area_samples",
             "eye.samples",
         ],
     },
@@ -164,6 +168,10 @@ impl Method for Waves {
 
     fn is_relative(&self, settings: &Settings) -> bool {
         settings.choice(&VARIANT) != "inverse"
+    }
+
+    fn reads(&self) -> &'static [&'static str] {
+        &["light.area_samples"]
     }
 
     fn stages(&self) -> &'static [&'static str] {
@@ -208,8 +216,8 @@ impl Method for Waves {
 
 /// The variant of all light.
 fn inverse(work: &mut Work<'_>) -> Result<Planned, PlanError> {
-    if work.scene.lights.is_empty() {
-        return Ok(Planned::LeftOut("there is no light"));
+    if let Some(reason) = inverse::nothing(work.scene) {
+        return Ok(Planned::LeftOut(reason));
     }
     Ok(match inverse::plan(work)? {
         Some(surface) => Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }),
@@ -232,14 +240,27 @@ fn check(settings: &Settings) -> Result<(), PlanError> {
             ),
         });
     }
-    if settings.choice(&SCREEN_DEPTH) == "on" && ["texture", "vertex"].contains(&variant) {
+    if settings.choice(&SCREEN_DEPTH) == "on" && ["inverse", "texture", "vertex"].contains(&variant) {
         return Err(PlanError::Refused {
             what: format!("waves.screen_depth=on with waves.variant={variant}"),
             reason: "where it finds its light, no screen is known".into(),
             remedy: "use waves.variant=pixel or shortcut, or waves.screen_depth=off".into(),
         });
     }
-    Ok(())
+    let unused: &[_] = match variant {
+        "inverse" => &[
+            (Setting::Real(&SUN_WIDTH), "it looks up no sun map, but has the scene's own suns"),
+            (Setting::Real(&SUN_EDGE), "it looks up no sun map, but has the scene's own suns"),
+        ],
+        "listing" => &[(Setting::Real(&ABSORBED), "the printed code knows no depth")],
+        _ => &[],
+    };
+    let Some((set, reason)) = unused.iter().find(|(setting, _)| settings.is_set(*setting)) else { return Ok(()) };
+    Err(PlanError::Refused {
+        what: format!("{}={} with waves.variant={variant}", set.key(), settings.text(*set)),
+        reason: (*reason).into(),
+        remedy: format!("do not set {}, or use another waves.variant", set.key()),
+    })
 }
 
 fn with(mut defines: Vec<(&'static str, String)>, name: &'static str, value: u32) -> Vec<(&'static str, String)> {

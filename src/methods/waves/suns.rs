@@ -44,21 +44,25 @@ pub fn nothing(scene: &Scene) -> Option<&'static str> {
     (suns(scene).next().is_none() && !scene.moves()).then_some(NO_SUN)
 }
 
+/// What the water takes of light on its way, 1/m: of every band alike where it is set, else as the scene has it.
+pub fn attenuation(scene: &Scene, water: &Water, settings: &Settings) -> DVec3 {
+    let absorption = match scene.materials[scene.objects[water.object].material].kind {
+        MaterialKind::Dielectric { absorption, .. } => DVec3::from(absorption),
+        _ => DVec3::ZERO,
+    };
+    settings.real(&ABSORBED).map_or(absorption, |share| DVec3::splat(-(-share).ln_1p()))
+}
+
 /// The sun map of a scene: all suns in one, as wide as the widest where nothing is set.
 pub fn data(scene: &Scene, water: &Water, settings: &Settings) -> WavesData {
     let irradiance: DVec3 = suns(scene).map(|(_, power, _)| DVec3::from(power)).sum();
     let own = suns(scene).map(|(.., width)| width).reduce(f64::max).unwrap_or(TRUE_WIDTH);
     let width = settings.real(&SUN_WIDTH).filter(|set| *set > 0.0).unwrap_or(own);
     let edge = settings.real(&SUN_EDGE).unwrap_or_default();
-    let absorption = match scene.materials[scene.objects[water.object].material].kind {
-        MaterialKind::Dielectric { absorption, .. } => DVec3::from(absorption),
-        _ => DVec3::ZERO,
-    };
-    let attenuation = settings.real(&ABSORBED).map_or(absorption, |share| DVec3::splat(-(-share).ln_1p()));
     let half = 0.5 * width.to_radians();
     WavesData {
         irradiance: irradiance.as_vec3().to_array(),
-        attenuation: attenuation.as_vec3().to_array(),
+        attenuation: attenuation(scene, water, settings).as_vec3().to_array(),
         inner: (half * (1.0 - edge)) as f32,
         outer: (half * (1.0 + edge)) as f32,
         distance: settings.real(&SUN_DISTANCE).unwrap_or_default() as f32,

@@ -64,7 +64,7 @@ pub static AREA_SAMPLES: Whole = Whole {
     default: 16,
     range: 1..=256,
     doc: "points (of a sun, directions) of each light with a size that send photons, each of a view of its own: all of them \
-          together about light.side x light.side",
+          together about light.side x light.side; of waves.variant = inverse, each with rays of its own",
 };
 
 /// The path class.

@@ -147,7 +147,8 @@ fn other_photons_tell_the_same() {
 fn every_setting_of_light_and_method_has_its_step() {
     for method in methods::ALL {
         let keys: Vec<_> = method.chain().iter().flat_map(|link| link.moved_by).copied().collect();
-        let theirs = |key: &str| method.shoots() && key.starts_with("light.") || key.starts_with(method.name());
+        let of_light = |key: &str| key.starts_with("light.") && (method.shoots() || method.reads().contains(&key));
+        let theirs = |key: &str| of_light(key) || key.starts_with(method.name());
         for setting in renderer::all_settings().iter().filter(|s| theirs(s.key())) {
             let count = keys.iter().filter(|key| **key == setting.key()).count();
             assert_eq!(count, 1, "{} in the chain of {}", setting.key(), method.name());
@@ -162,10 +163,7 @@ fn every_setting_of_light_and_method_has_its_step() {
 fn a_picture_right_up_to_a_scale_is_fitted() {
     let bench = Bench::new();
     let chain = bench.chain_of("waves", "water", &[], &BUDGET);
-    assert_eq!(
-        chain.steps.iter().map(|step| step.name.as_str()).collect::<Vec<_>>(),
-        ["path class", "light from straight above alone"]
-    );
+    assert_eq!(chain.steps.iter().map(|step| step.name.as_str()).collect::<Vec<_>>(), ["path class", "variant"]);
     let fitted = chain.fitted.expect("the picture is right only up to a scale");
     assert!(fitted.scale > 0.0 && fitted.relmse.value <= chain.whole.relmse.value, "{fitted:?}");
     assert!(bench.chain("diffuse", &[], &BUDGET).fitted.is_none());

@@ -90,6 +90,14 @@ fn one_sample_a_pixel_is_a_warning() {
     assert!(ran.err.contains("i.exr") && ran.err.contains(words) && ran.err.contains("eye.samples=1"), "{}", ran.err);
     assert!(ran.json()["warnings"][0].as_str().is_some_and(|w| w.contains(words)));
     assert_eq!(compare(&[&image, "--reference", &image]).err, "");
+    let filtered = Picture { direct: true, ..one(SIDE).about("surface", "filtered") }.write(&folder, "filtered.exr");
+    assert_eq!(compare(&[&filtered, "--reference", &reference]).err, "");
+    let both = Picture { direct: true, ..Picture::of(1.0) }.write(&folder, "both.exr");
+    let direct = compare(&[&filtered, "--reference", &both, "--layer", "irradiance.direct"]).err;
+    assert!(
+        direct.contains(words) && direct.contains("with --set eye.samples=4"),
+        "the method gives the caustic alone: {direct}"
+    );
     let more = Picture::of(1.0).about("settings.eye.samples", "2").write(&folder, "more.exr");
     assert_eq!(compare(&[&more, "--reference", &reference]).err, "");
     let large = Picture { side: 512, ..Picture::of(1.0) }.write(&folder, "large.exr");

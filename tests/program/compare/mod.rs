@@ -21,6 +21,8 @@ struct Picture {
     value: f32,
     variance: Option<f32>,
     masked: usize,
+    /// With direct light of 1.
+    direct: bool,
     about: Provenance,
 }
 
@@ -28,7 +30,14 @@ impl Picture {
     fn of(value: f32) -> Self {
         let entry = |(name, text): (&str, &str)| (name.to_owned(), text.to_owned());
         let about = [("e0", "2"), ("camera", "region"), ("scene.hash", "a"), ("scene.resolved", RESOLVED)];
-        Self { side: SIDE, value, variance: None, masked: 0, about: about.map(entry).into_iter().collect() }
+        Self {
+            side: SIDE,
+            value,
+            variance: None,
+            masked: 0,
+            direct: false,
+            about: about.map(entry).into_iter().collect(),
+        }
     }
 
     fn about(mut self, name: &str, text: &str) -> Self {
@@ -41,6 +50,9 @@ impl Picture {
         let mut layers = Layers::new(self.side, self.side);
         let mask = (0..pixels).map(|at| if at < self.masked { 0.5 } else { 0.0 }).collect();
         layers.push("irradiance.caustic", 3, vec![self.value; 3 * pixels]).expect("a layer that fits");
+        if self.direct {
+            layers.push("irradiance.direct", 3, vec![1.0; 3 * pixels]).expect("a layer that fits");
+        }
         layers.push("mask", 1, mask).expect("a layer that fits");
         if let Some(variance) = self.variance {
             layers.push("irradiance.caustic.variance", 3, vec![variance; 3 * pixels]).expect("a layer that fits");

@@ -56,13 +56,14 @@ fn a_changed_shader_concerns_the_points_that_use_it_alone() {
 #[test]
 fn settings_of_another_method_make_no_points() {
     let place = Place::new("");
-    let axes = "light.side = [4, 8]\nmaps.side = [4, 8]\nwaves.variant = [\"pixel\", \"vertex\", \"texture\"]\neye.samples = [1, 2]\n";
+    let axes = "light.side = [4, 8]\nmaps.side = [4, 8]\nlight.area_samples = [1, 2]\nwaves.variant = [\"pixel\", \"inverse\", \"texture\"]\neye.samples = [1, 2]\n";
     let text = fs::read_to_string(&place.file).unwrap().replace("[\"maps\"]", "[\"maps\", \"waves\", \"none\"]");
     fs::write(&place.file, format!("{text}reference = \"none\"\n[set]\n{axes}")).unwrap();
     let sweep = Sweep::load(place.file.to_str().unwrap()).unwrap();
-    assert_eq!(sweep.count(), 2 * (2 * 2 + 3 + 1));
+    assert_eq!(sweep.count(), 2 * (2 * (2 * 2 + 3) + 1));
     let named = |key: &str| (0..sweep.count()).filter(|at| sweep.words(*at).contains(key)).count();
-    assert_eq!([named("maps.side"), named("light.side"), named("waves.variant")], [8, 8, 6]);
+    let keys = ["maps.side", "light.side", "waves.variant", "light.area_samples"];
+    assert_eq!(keys.map(named), [16, 16, 12, 28], "points of maps, of waves, and of both");
 }
 
 #[test]
