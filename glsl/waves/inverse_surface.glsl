@@ -196,12 +196,16 @@ bool walk_meets(Walk walk, uint light, Place at, vec2 depth) {
            may_land(water_bounds.at[bounds_at(light, walk.level, walk.node)], at, depth);
 }
 
+// Whether the device ended a search before it was over (llvmpipe does, after so many steps): its light is lost, and counted.
+bool search_cut = false;
+
 // Finding a cell and asking it are loops of their own, so that invocations of one group do the same thing at the same time.
 vec3 light_below(uint light, Place at) {
     vec3 sum = vec3(0.0);
     WaterLight from = water_lights.at[light];
     vec2 depth = depth_shares(from, at);
     Walk walk = Walk(LEVELS - 1, ivec2(0));
+    bool over = false; // said where it is so: what a loop's end implies, compilers take for granted
     while (walk.level < LEVELS) {
         bool meets = walk_meets(walk, light, at, depth);
         while (walk.level < LEVELS && !(meets && walk.level == 0)) {
@@ -212,7 +216,9 @@ vec3 light_below(uint light, Place at) {
             sum += cell_light(from, light, walk.node, at);
             walk = walk_on(walk, false);
         }
+        over = walk.level >= LEVELS;
     }
+    search_cut = search_cut || !over;
     return sum;
 }
 

@@ -6,6 +6,7 @@ mod cross;
 mod hard;
 mod inverse;
 mod model;
+mod oblique;
 
 use common::{
     gpu, job,
