@@ -135,7 +135,9 @@ impl Mean {
         let common = pair.common_scatter() * raised * raised;
         // Of a pixel the variance is 4 w² d² v + 2 w² v² at the noiseless d; at the noisy one 4 w² v² are too much.
         let (deviations, noise) = (mean(|s| s.deviation * s.deviation), mean(|s| s.raised * s.raised));
-        let error = ((deviations - 2.0 * noise).max(2.0 * noise) / count + common).sqrt();
+        // Errors that move together may do so along what the image is wrong by: at worst that is as if there were as few of it.
+        let along = 2.0 * pair.common_scatter() * (value - raised).max(0.0) * raised.max(0.0);
+        let error = ((deviations - 2.0 * noise).max(2.0 * noise) / count + common + along).sqrt();
         let most_error = (deviations / count + common).sqrt();
         Self { value, raised, error, most_error, perfect: mean(|s| s.perfect) }
     }
