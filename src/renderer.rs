@@ -28,7 +28,7 @@ use crate::{
 pub use moving::Moved;
 use plan::plan_with;
 pub use plan::{Planned, Providers, plan};
-pub use read::{Counted, Dump, Energy, resource};
+pub use read::{Counted, Dump, Energy, Unresolved, resource};
 pub use show::LAYERS;
 
 /// An error of rendering.

@@ -17,16 +17,31 @@ void main() {
     irradiance = vec4(0.0);
     radiance = vec4(0.0);
     int samples = push.samples * push.samples;
+#ifdef SEARCHES
+    int begun = 0; // less than all where the device ends this loop too
+#endif
     for (int k = 0; k < samples; k++) {
+#ifdef SEARCHES
+        begun++;
+#endif
         Surface s;
         vec3 d;
         if (!eye_surface(sample_texel(pixel, k), s, d)) continue;
         Material m = scene_materials.data[s.material];
         if (m.kind != MATERIAL_DIFFUSE) continue;
+#ifdef SEARCHES
+        search_cut = false;
+#endif
         vec3 e = surface_irradiance(s.p, facing_normal(s, d), s.object, s.uv);
         irradiance.rgb += e;
+#ifdef SEARCHES
+        irradiance.a += search_cut ? 1.0 : 0.0; // read back alone: no layer has it
+#endif
         radiance.rgb += e * albedo(s) / PI * eye_transmits(s.p);
     }
+#ifdef SEARCHES
+    irradiance.a += float(samples - begun);
+#endif
     irradiance /= float(samples);
     radiance /= float(samples);
 }

@@ -18,7 +18,7 @@ use super::{
     signals,
 };
 use crate::{
-    lab::{self, Auto, CompareReport, Comparison, LabError, Limit, MEASURES, Making, Picture, Report},
+    lab::{self, Auto, CompareReport, Comparison, LabError, Limit, Making, Picture, Report},
     names::NoSuch,
     store::Store,
     whole::OutFolder,
@@ -44,7 +44,7 @@ pub struct CompareArgs {
     /// The layer that is judged
     #[arg(long, value_name = "LAYER", default_value = "irradiance.caustic")]
     layer: String,
-    /// Exit with 3 if a measure exceeds a value (of energy_ratio: its distance from 1); repeatable
+    /// Exit with 3 if a measure exceeds a value (of energy_ratio: its distance from 1; relmse_fitted is relmse where a picture is in W/m2); repeatable
     #[arg(long, value_name = "MEASURE=VALUE", value_parser = parse_limit)]
     fail_above: Vec<Limit>,
     /// Folder for pictures of the signed error and of FLIP; made where it is missing
@@ -138,10 +138,11 @@ fn write_maps(mut folder: OutFolder, paths: &[PathBuf], comparisons: &[Compariso
 }
 
 fn parse_limit(text: &str) -> Result<Limit, String> {
-    let expected = || format!("expected MEASURE=VALUE, a number not below 0; measures: {}", MEASURES.join(", "));
-    let unknown = |name| NoSuch::new("measure", name, MEASURES).to_string();
+    let names = || lab::limited().collect::<Vec<_>>();
+    let expected = || format!("expected MEASURE=VALUE, a number not below 0; measures: {}", names().join(", "));
+    let unknown = |name| NoSuch::new("measure", name, names()).to_string();
     let (name, value) = text.split_once('=').ok_or_else(expected)?;
-    let measure = MEASURES.into_iter().find(|measure| *measure == name).ok_or_else(|| unknown(name))?;
+    let measure = lab::limited().find(|measure| *measure == name).ok_or_else(|| unknown(name))?;
     let most = value.parse().ok().filter(|most: &f64| most.is_finite() && *most >= 0.0).ok_or_else(expected)?;
     Ok(Limit { measure, most })
 }

@@ -14,6 +14,11 @@ pub(super) const LEAST_JUDGED: f64 = 0.95;
 pub const MEASURES: [&str; 8] =
     ["relmse", "relmse_standard", "relmse_trimmed", "rmse", "mae", "mape", "energy_ratio", "flip"];
 
+/// The judged figure without the reference's noise, and with the best scale: they stand beside [`MEASURES`] where they are known.
+pub const DEBIASED: &str = "relmse_debiased";
+/// See [`DEBIASED`].
+pub const FITTED: &str = "relmse_fitted";
+
 /// A picture and what is wrong with it.
 pub struct Comparison {
     /// The picture's file.
@@ -32,6 +37,8 @@ pub struct Comparison {
     pub measures: [Measure; 8],
     /// Of a picture that is right up to a scale.
     pub fitted: Option<Fitted>,
+    /// The judged figure without what the reference's noise adds; where that noise is known.
+    pub debiased: Option<Measure>,
     /// What differs between the two that should not.
     pub warnings: Vec<String>,
     pub(super) maps: Maps,
@@ -77,6 +84,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
         Pictures { size: image.size(), image: &xs, reference: &rs, variance: vs.as_deref(), judged: &sides.judged };
     let fitted = image.is_relative(layer).then(|| metrics::fitted(&sides.pair(), constants.e0));
     let fitted = fitted.map(|fit| Fitted { relmse: interval(reference, fit.relmse), ..fit });
+    let debiased = (!is_cells(reference)).then(|| metrics::relmse_debiased(&sides.pair(), constants.e0)).flatten();
     let flip = metrics::flip(&pictures, &seen).expect("both pictures and the mask are of one size, checked above");
     Ok(Comparison {
         image: image.file.clone(),
@@ -86,6 +94,7 @@ pub fn compare(image: &Picture, reference: &Picture, layer: &str) -> Result<Comp
         masked: sides.judged.len() - sides.pixels,
         measures: measures(&sides.pair(), constants.e0, flip.measure).map(|measure| interval(reference, measure)),
         fitted,
+        debiased,
         constants,
         warnings: warnings(image, reference, &sides),
         maps: Maps { size: image.size(), signed: signed(sides.x, sides.r), flip: flip.map, judged: sides.judged },
@@ -187,8 +196,11 @@ fn measures(pair: &Pair, e0: f64, flip: Measure) -> [Measure; 8] {
 
 /// Cells of light have no noise: what stands for their variance says how far they may be off, and bounds no interval.
 fn interval(reference: &Picture, measure: Measure) -> Measure {
-    let cells = reference.about.get("estimator").is_some_and(|estimator| estimator == "cells");
-    if cells { measure.without_interval() } else { measure }
+    if is_cells(reference) { measure.without_interval() } else { measure }
+}
+
+fn is_cells(reference: &Picture) -> bool {
+    reference.about.get("estimator").is_some_and(|estimator| estimator == "cells")
 }
 
 /// The pixels judged, in float64.

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::{
     Cell, Report, Table,
-    compare::{Comparison, Constants, MEASURES},
+    compare::{Comparison, Constants, DEBIASED, FITTED, MEASURES},
 };
 use crate::{
     metrics::{Fitted, Measure},
@@ -34,6 +34,9 @@ struct Row {
     /// Of a picture that is right up to a scale.
     #[serde(skip_serializing_if = "Option::is_none")]
     fitted: Option<FittedRow>,
+    /// The judged figure without what the reference's noise adds; its `truth_noise` is its standard error.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "some")]
+    relmse_debiased: Option<Measure>,
 }
 
 /// The best scale, and the judged figure with it.
@@ -53,10 +56,15 @@ impl From<Fitted> for FittedRow {
 /// A limit that a measure may not exceed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// One of [`MEASURES`].
+    /// One of [`limited`].
     pub measure: &'static str,
     /// The largest value allowed; for the ratio of energies, the largest distance from one.
     pub most: f64,
+}
+
+/// The measures that limits can be set for.
+pub fn limited() -> impl Iterator<Item = &'static str> {
+    MEASURES.into_iter().chain([DEBIASED, FITTED])
 }
 
 impl CompareReport {
@@ -71,6 +79,7 @@ impl CompareReport {
             constants: c.constants,
             measures: c.measures,
             fitted: c.fitted.map(FittedRow::from),
+            relmse_debiased: c.debiased,
         };
         Self {
             schema: "nephroid.compare/1",
@@ -89,9 +98,17 @@ impl CompareReport {
     pub fn exceeded(&self, limits: &[Limit]) -> Vec<String> {
         let mut exceeded = Vec::new();
         for (row, limit) in self.results.iter().flat_map(|row| limits.iter().map(move |limit| (row, limit))) {
-            let Some(at) = MEASURES.iter().position(|name| *name == limit.measure) else { continue };
-            let measure = row.measures[at];
-            if (measure.value - measure.perfect).abs() <= limit.most {
+            let Some(measure) = row.judged(limit.measure) else {
+                let Row { image, reference, .. } = row;
+                exceeded.push(format!(
+                    "{} of {image} is not known: {reference} says no noise, as photons do",
+                    limit.measure
+                ));
+                continue;
+            };
+            // Below zero, where noise was taken off, is not above anything.
+            let off = if measure.perfect == 0.0 { measure.value } else { (measure.value - measure.perfect).abs() };
+            if off <= limit.most {
                 continue;
             }
             let (name, value, most) = (limit.measure, figure(measure.value), limit.most);
@@ -109,6 +126,10 @@ fn by_name<S: Serializer>(measures: &[Measure; 8], serializer: S) -> Result<S::O
 
 fn one<S: Serializer>(measure: &Measure, serializer: S) -> Result<S::Ok, S::Error> {
     json(measure).serialize(serializer)
+}
+
+fn some<S: Serializer>(measure: &Option<Measure>, serializer: S) -> Result<S::Ok, S::Error> {
+    measure.as_ref().map(json).serialize(serializer)
 }
 
 pub(super) fn json(measure: &Measure) -> Value {
@@ -171,6 +192,11 @@ impl Report for CompareReport {
                 "a relative picture, right only up to a scale: relmse_fitted is relmse with the best one".to_owned(),
             );
         }
+        if self.results.iter().any(|row| row.relmse_debiased.is_some()) {
+            notes.push(
+                "relmse_debiased: without what the reference's noise adds; its noise is its standard error".to_owned(),
+            );
+        }
         let lost = |row: &Row| row.measures.iter().any(Measure::is_noise);
         if self.results.iter().any(lost) {
             notes.push("lost in noise: below twice what a perfect image would score against this reference".to_owned());
@@ -200,13 +226,20 @@ impl CompareReport {
 }
 
 impl Row {
-    /// The measures by name; of a relative picture those of the fit too.
+    /// What a limit is for: of a picture in W/m², whose scale is one, `relmse_fitted` is `relmse`.
+    fn judged(&self, name: &str) -> Option<Measure> {
+        let found = self.named().find(|(known, _)| *known == name).map(|(_, measure)| measure);
+        found.or_else(|| (name == FITTED).then_some(self.measures[0]))
+    }
+
+    /// The measures by name; of a relative picture those of the fit too, and what is left without noise where that is known.
     fn named(&self) -> impl Iterator<Item = (&'static str, Measure)> {
         let fit = |FittedRow { scale, relmse }: FittedRow| {
             let scale = Measure { value: scale, low: None, high: None, truth_noise: None, perfect: 1.0 };
-            [("scale", scale), ("relmse_fitted", relmse)]
+            [("scale", scale), (FITTED, relmse)]
         };
-        MEASURES.into_iter().zip(self.measures).chain(self.fitted.into_iter().flat_map(fit))
+        let all = MEASURES.into_iter().zip(self.measures).chain(self.fitted.into_iter().flat_map(fit));
+        all.chain(self.relmse_debiased.map(|measure| (DEBIASED, measure)))
     }
 }
 

@@ -7,7 +7,7 @@ use crate::{
     gpu::{FrameTimes, PassCounters},
     image::{ImageError, Layers},
     passes::account::Account,
-    renderer::{Energy, Frame, RenderError, Renderer},
+    renderer::{Energy, Frame, RenderError, Renderer, Unresolved},
     scene::SceneError,
     whole::FileError,
 };
@@ -88,6 +88,8 @@ pub struct Measured {
     pub account: Account,
     /// The light deposited beside the light emitted.
     pub energy: Energy,
+    /// What a method without photons left out.
+    pub unresolved: Option<Unresolved>,
     /// The picture.
     pub layers: Layers,
 }
@@ -119,9 +121,10 @@ impl Experiment {
         at(Step::Counting)?;
         let (stages, counters) = renderer.counters(&self.frame)?.into_iter().unzip();
         let account = renderer.account()?;
+        let unresolved = renderer.unresolved()?;
         at(Step::Reading)?;
         let energy = renderer.energy(&account)?;
         let layers = renderer.layers()?;
-        Ok(Measured { stages, frames, counters, account, energy, layers })
+        Ok(Measured { stages, frames, counters, account, energy, unresolved, layers })
     }
 }

@@ -37,7 +37,7 @@ pub use catalogue::{MethodsReport, ScenesReport};
 pub use compare::{Comparison, Constants, MEASURES, compare};
 pub use compare_error::CompareError;
 pub use compare_maps::error_maps;
-pub use compare_report::{CompareReport, Limit};
+pub use compare_report::{CompareReport, Limit, limited};
 pub use devices::{DeviceRow, DevicesReport};
 pub use doctor::DoctorReport;
 pub use experiment::{Experiment, LabError, Measured, Step};

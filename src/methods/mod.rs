@@ -60,6 +60,8 @@ pub struct Provided {
     pub deposits: Vec<ImageId>,
     /// What a method counts itself, where it traces more than the photon buffer holds.
     pub tally: Option<Tally>,
+    /// What a method leaves out of its light.
+    pub left_out: Option<LeftOut>,
     /// Its photons; without any, there is no account of them.
     pub photons: Shots,
 }
@@ -91,6 +93,16 @@ pub struct Tally {
     pub buffer: BufferId,
     /// Light samples traced besides in every frame.
     pub samples: u64,
+}
+
+/// What a method without photons leaves out of its light. Its buffer is written by a pass of the account: pairs of words, pieces of
+/// light without any way on, and those that some of their corners have.
+#[derive(Clone, Copy, Debug)]
+pub struct LeftOut {
+    /// The buffer.
+    pub buffer: BufferId,
+    /// Pieces in all.
+    pub pieces: u64,
 }
 
 /// A picture in the chain of a method's error budget; neighbours differ in one thing.

@@ -3,6 +3,7 @@
 //! | measure | mean over values (pixels × bands) of | constants |
 //! |---|---|---|
 //! | [`relmse`], the judged one | (x − r)² / (r² + ε) | ε = (0.1 E₀)², E₀ of [`bare_irradiance`] |
+//! | [`relmse_debiased`] | the same, without what the truth's noise adds to it | the same |
 //! | [`fitted()`] | the same, of s x for the s that makes it least | the same |
 //! | [`relmse_standard`] | the same | ε = 10⁻² mean(r)² |
 //! | [`relmse_trimmed`] | the same, without the worst 0.1 % of pixels | ε = 10⁻² mean(r)² |
@@ -44,7 +45,7 @@ pub use fitted::{Fitted, fitted};
 pub use flicker::flicker;
 pub use flip::{Flip, PIXELS_PER_DEGREE, Pictures, Seen, flip, flip_map, magma};
 pub use pair::{Correlation, Pair};
-pub use squared::{RELATIVE_TO_E0, relmse, relmse_standard, relmse_trimmed, rmse};
+pub use squared::{RELATIVE_TO_E0, relmse, relmse_debiased, relmse_standard, relmse_trimmed, rmse};
 
 /// ε of the standard relative squared error, relative to the squared mean; of the absolute one, to the mean.
 pub const RELATIVE_TO_MEAN: f64 = 1e-2;

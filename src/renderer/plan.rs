@@ -70,6 +70,8 @@ pub struct Planned {
     pub deposits: Vec<ImageId>,
     /// What the method counts itself.
     pub tally: Option<methods::Tally>,
+    /// What the method leaves out.
+    pub left_out: Option<methods::LeftOut>,
     /// Bytes a photon; 0 without photons.
     pub photon_bytes: u64,
     /// What planning took on the host, trees included, ms.
@@ -121,6 +123,7 @@ pub(super) fn plan_with(job: &Job, trees: &mut Trees) -> Result<Planned, RenderE
         layers,
         accounts: provided.photons.accounts,
         tally: provided.tally,
+        left_out: provided.left_out,
         deposits: provided.deposits,
         photon_bytes: provided.photons.bytes_each,
         plan_ms: start.elapsed().as_secs_f64() * 1e3,

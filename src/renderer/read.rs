@@ -2,7 +2,7 @@
 
 use super::{RenderError, Renderer};
 use crate::{
-    gpu::{ImageId, Plan, Resource},
+    gpu::{ImageId, Phase, Plan, Resource},
     image::Layers,
     names::NoSuch,
     passes::account::Account,
@@ -53,7 +53,31 @@ pub struct Counted {
     pub left: u64,
 }
 
+/// What a method without photons left out of its light, in the last frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unresolved {
+    /// Pieces of light in all: of water, triangles of rays.
+    pub pieces: u64,
+    /// Of them those without any way on: the light meets them from behind.
+    pub dark: u64,
+    /// Those left out though at one or two of their corners light goes on: it grazes them.
+    pub grazed: u64,
+    /// Pixels one of whose searches the device ended before it was over: their light is lost.
+    pub cut_pixels: u64,
+}
+
 impl Renderer {
+    /// Counts what the method left out of its light; `None` of one that leaves nothing out, or says so by its photons.
+    pub fn unresolved(&mut self) -> Result<Option<Unresolved>, RenderError> {
+        let Some(left) = self.planned.left_out else { return Ok(None) };
+        self.program.run(Phase::Account, &[])?;
+        let rows: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&self.program.read_buffer(left.buffer)?);
+        let [dark, grazed] = [0, 1].map(|word: usize| rows.iter().map(|row| u64::from(row[word])).sum());
+        let texels = self.planned.layers.irradiance_caustic.map(|image| self.program.read_image(image)).transpose()?;
+        let cut_pixels = texels.iter().flat_map(|t| t.chunks_exact(4)).filter(|texel| texel[3] > 0.0).count() as u64;
+        Ok(Some(Unresolved { pieces: left.pieces, dark, grazed, cut_pixels }))
+    }
+
     /// The picture's layers: `radiance`, `direct`, `caustic`, `irradiance.direct`, `irradiance.caustic`, `mask`, and
     /// `sky` where the scene has one.
     pub fn layers(&self) -> Result<Layers, RenderError> {

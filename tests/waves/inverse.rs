@@ -6,7 +6,7 @@ use nephroid::{
     gpu::Gpu,
     image::Layers,
     methods,
-    renderer::{Job, Providers, plan},
+    renderer::{Frame, Job, Providers, Renderer, Unresolved, plan},
     truth::closed,
 };
 
@@ -218,6 +218,52 @@ fn it_has_an_answer_everywhere() {
     let light = light(&gpu, &inverse("scenes/papers/sea.toml", &calm, "region", [15, 15]));
     // Float32 roundings, and a disc of 0.53° that Fresnel's equations take for its middle.
     assert!(worst(light.iter().map(|x| x - 0.979_941)) < 1e-4, "{light:?}");
+}
+
+fn unresolved(gpu: &Gpu, job: &Job) -> Unresolved {
+    let mut renderer = Renderer::new(gpu, job).expect("a renderer");
+    renderer.frame(&Frame::default()).expect("a frame");
+    renderer.unresolved().expect("counted").expect("inverse says what it leaves out")
+}
+
+/// Under a sun at 89.9° about half of the wave faces away; between the halves the sun grazes. Straight above nothing is left out.
+#[test]
+fn what_it_leaves_out_is_counted() {
+    let gpu = gpu();
+    // One octave, that its waves are wider than cells.
+    let small =
+        [("scene.objects.water.wave.grid", "64"), ("waves.cells", "64"), ("scene.objects.water.wave.octaves", "1")];
+    let of = |sun: &'static str| {
+        let set = [&small[..], &[("scene.lights.sun.directional.direction", sun)]].concat();
+        unresolved(&gpu, &inverse(PAPER, &set, "region", [15, 15]))
+    };
+    let low = of("[1, -0.001745, 0]");
+    let (dark, grazed) = (low.dark as f64 / low.pieces as f64, low.grazed as f64 / low.pieces as f64);
+    println!("{low:?}");
+    assert!(low.pieces == 2 * 64 * 64 && (0.2..0.8).contains(&dark) && (0.005..0.2).contains(&grazed), "{low:?}");
+    assert_eq!(low.cut_pixels, 0);
+    let high = of("[0, -1, 0]");
+    assert_eq!([high.dark, high.grazed, high.cut_pixels], [0; 3]);
+    let other = Job {
+        settings: inverse(PAPER, &[("waves.variant", "pixel")], "region", [8, 8]).settings,
+        ..inverse(PAPER, &small, "region", [8, 8])
+    };
+    assert_eq!(Renderer::new(&gpu, &other).expect("a renderer").unresolved().expect("counts nothing"), None);
+}
+
+/// Of a pixel that goes on for too long, as llvmpipe has it, light is lost, and the pixel is counted; where none is, none is.
+#[test]
+fn pixels_whose_search_the_device_ends_are_counted() {
+    let gpu = gpu();
+    let of = |samples: &'static str| {
+        let job = inverse(PAPER, &[("eye.samples", samples)], "region", [6, 6]);
+        (light(&gpu, &job).iter().sum::<f64>(), unresolved(&gpu, &job).cut_pixels)
+    };
+    let ((whole, none), (many, cut)) = (of("1"), of("8"));
+    println!("{cut} pixels of 36 were cut; light {many} of {whole}");
+    assert_eq!(none, 0);
+    // Without a cut, samples move light between pixels alone.
+    assert_eq!(cut > 0, many < 0.99 * whole, "{cut} pixels, {many} of {whole}");
 }
 
 #[test]

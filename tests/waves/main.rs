@@ -11,6 +11,7 @@ mod eye;
 mod hard;
 mod inverse;
 mod model;
+mod oblique;
 
 use common::{
     gpu, job,

@@ -14,7 +14,7 @@ use crate::{
         account::{Account, BUCKETS},
         light::LAYERS,
     },
-    renderer::{Counted, Energy, Job, Providers, Renderer},
+    renderer::{Counted, Energy, Job, Providers, Renderer, Unresolved},
     settings::Settings,
     stats,
 };
@@ -44,6 +44,8 @@ pub struct RenderReport {
     photons: Option<Map<String, Value>>,
     photon_bytes: u64,
     energy: Option<EnergyRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unresolved: Option<UnresolvedRow>,
     exposure_ev: f64,
     nonfinite_pixels: usize,
     warnings: Vec<String>,
@@ -89,6 +91,21 @@ struct Frame<T> {
     wall_ms: T,
     unaccounted_ms: T,
     record_ms: T,
+}
+
+/// What a method without photons left out of its light: triangles of rays, and pixels whose search the device ended.
+#[derive(Debug, Serialize)]
+struct UnresolvedRow {
+    triangles: u64,
+    dark: u64,
+    grazed: u64,
+    cut_pixels: u64,
+}
+
+impl From<Unresolved> for UnresolvedRow {
+    fn from(Unresolved { pieces, dark, grazed, cut_pixels }: Unresolved) -> Self {
+        Self { triangles: pieces, dark, grazed, cut_pixels }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -144,9 +161,10 @@ impl RenderReport {
             photons: shoot.then(|| photons(&measured.account)),
             photon_bytes: renderer.photon_bytes(),
             energy: shoot.then(|| EnergyRow::new(&measured.energy, &measured.account)),
+            unresolved: measured.unresolved.map(UnresolvedRow::from),
             exposure_ev: exposure(&job.settings, &job.scene),
             nonfinite_pixels: nonfinite_pixels(&measured.layers),
-            warnings: job.scene.warnings.iter().cloned().chain(warnings(&measured.account, job)).collect(),
+            warnings: [&job.scene.warnings[..], &warnings(&measured.account, job), &cut(measured)].concat(),
         }
     }
 
@@ -243,6 +261,18 @@ impl EnergyRow {
 pub(in crate::lab) fn flux(account: &Account) -> Map<String, Value> {
     let flux = BUCKETS.iter().zip(account.flux_w).map(|(name, flux)| (name.to_string(), flux.into()));
     flux.chain([("other_paths".to_owned(), account.other_paths_w.into())]).collect()
+}
+
+/// Says that searches were ended, whose light is lost.
+fn cut(measured: &Measured) -> Vec<String> {
+    let pixels = measured.unresolved.map_or(0, |left| left.cut_pixels);
+    let warning = || {
+        format!(
+            "{pixels} pixels lost light: the device ended their search for it; set eye.samples=1, or make the picture larger \
+             (each pixel then has fewer cells)"
+        )
+    };
+    (pixels > 0).then(warning).into_iter().collect()
 }
 
 /// Share of the flux arriving at receivers that may be missing from the map, for one reason, before it is said.

@@ -54,6 +54,12 @@ impl Report for RenderReport {
                 c.samples, c.refined, c.left, c.arrived_w, c.points_w
             )
         }));
+        notes.extend(self.unresolved.as_ref().map(|left| {
+            format!(
+                "water: of {} triangles of rays {} are met from behind and {} grazed, and left out; {} pixels' searches were ended",
+                left.triangles, left.dark, left.grazed, left.cut_pixels
+            )
+        }));
         notes.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
         if self.device.software {
             let device = &self.device.name;

@@ -1,6 +1,7 @@
 //! What a published figure asks of a run: a time, or what follows from several, or from counts.
 
 use super::{
+    claims::Claim,
     columns::{Part, Variant},
     measure::{Measured, Run},
     subject::Subject,
@@ -45,6 +46,8 @@ pub enum Asked {
     Dropped(Place, Pick),
     /// Triangles of the scene.
     Triangles(Subject),
+    /// What the paper on water says.
+    Claim(Claim),
 }
 
 /// Coarsest levels of a traversal that are "the first few".
@@ -70,7 +73,13 @@ impl Asked {
             Self::Times(a, b) => vec![*a, *b],
             Self::Saved(pairs, _) | Self::PaysFrom(pairs) => pairs.iter().flat_map(|(a, b)| [*a, *b]).collect(),
             Self::Triangles(_) => Vec::new(),
+            Self::Claim(claim) => claim.places(),
         }
+    }
+
+    /// Of them those whose time it asks; of the others one frame is enough.
+    pub fn timed(&self) -> Vec<Place> {
+        if let Self::Claim(claim) = self { claim.timed() } else { self.places() }
     }
 
     /// The one variant and N that it is of, if it is of one.
@@ -100,6 +109,7 @@ impl Asked {
                 let all: Vec<_> = pairs.iter().filter_map(|(a, b)| ratio(run, *a, *b).ok()).map(saved).collect();
                 pick.of(all.into_iter()).ok_or_else(|| run.why(pairs.first().map_or(0, |(a, _)| a.side)))
             }
+            Self::Claim(claim) => claim.measure(run),
             Self::PaysFrom(pairs) => pays_from(run, pairs),
             Self::Points(place) => Ok(Interval::exact(points(run, *place)?)),
             Self::Fewer(place) => {
@@ -126,7 +136,7 @@ fn points(run: &Run, place: Place) -> Result<f64, String> {
 }
 
 /// How many times as long as `a` it is that `b` takes.
-fn ratio(run: &Run, a: Place, b: Place) -> Result<Ratio, String> {
+pub(super) fn ratio(run: &Run, a: Place, b: Place) -> Result<Ratio, String> {
     let [at, bt] = [run.find(a)?, run.find(b)?];
     let take = |at: usize, part: Part| move |frame: &FrameTimes| part.of(&run.all[at].stages, frame);
     Ok(run.timed.ratio((at, &take(at, a.part)), (bt, &take(bt, b.part))))

@@ -2,6 +2,7 @@
 
 use super::{
     asked::{Asked, Place},
+    claims,
     subject::Subject,
     text,
 };
@@ -30,6 +31,10 @@ pub enum Part {
     Rate,
     /// All that makes light below water, ms.
     Water,
+    /// What finds it before anything is seen, ms.
+    Texture,
+    /// What finds it where it is seen, ms.
+    Surface,
 }
 
 impl Part {
@@ -37,9 +42,9 @@ impl Part {
     pub fn holds(self, stage: &str) -> bool {
         let part = match stage {
             _ if self == Self::Rate => self,
-            s if self == Self::Water => {
-                return ["waves/", "eye/surface"].iter().any(|of| s.starts_with(of));
-            }
+            s if self == Self::Water => return Self::Texture.holds(s) || Self::Surface.holds(s),
+            s if self == Self::Texture => return s.starts_with("waves/"),
+            s if self == Self::Surface => return s == "eye/surface",
             s if s.starts_with("light/") => Self::Photons,
             s if s.starts_with("maps/copy") => Self::Copy,
             s if s.starts_with("maps/") => Self::Gather,
@@ -72,10 +77,19 @@ pub struct Variant {
     pub cull: &'static str,
     /// `waves.variant` in the place of all these.
     pub waves: Option<&'static str>,
+    /// How many times as many pixels the picture has along a side, of one eye sample each, where that is what is measured.
+    pub magnified: Option<u32>,
 }
 
-pub const COPY_2006: Variant =
-    Variant { subject: Subject::Still, gather: "copy", copy: "16-32", splat: None, cull: "clip", waves: None };
+pub const COPY_2006: Variant = Variant {
+    subject: Subject::Still,
+    gather: "copy",
+    copy: "16-32",
+    splat: None,
+    cull: "clip",
+    waves: None,
+    magnified: None,
+};
 const COPY_32: Variant = Variant { copy: "32-32", ..COPY_2006 };
 const COPY_16: Variant = Variant { copy: "16-16", ..COPY_2006 };
 
@@ -83,7 +97,9 @@ impl Variant {
     /// In words.
     pub fn name(self) -> String {
         if let Some(waves) = self.waves {
-            return waves.to_owned();
+            let note = self.subject.note().map_or(String::new(), |note| format!(", {note}"));
+            let magnified = self.magnified.map_or(String::new(), |times| format!(", {times} x the picture"));
+            return format!("{waves}{note}{magnified}");
         }
         let name = match (self.gather, self.splat) {
             (_, Some(splat)) => splat.to_owned(),
@@ -99,9 +115,9 @@ impl Variant {
     pub fn at(self, side: u32) -> String {
         match self.waves {
             None => format!("{}, {side}² photons", self.name()),
-            Some("pixel") => "pixel".to_owned(),
-            Some("vertex") => format!("vertex, {side}² cells"),
-            Some(other) => format!("{other}, {side}² texels"),
+            Some("vertex") => format!("{}, {side}² cells", self.name()),
+            Some("texture") => format!("{}, {side}² texels", self.name()),
+            Some(_) => self.name(),
         }
     }
 
@@ -116,6 +132,16 @@ impl Variant {
         if self.waves.is_some() { 1.0 } else { 4.0 }
     }
 
+    /// Whether its picture is one of those that the paper shows, which are held against a truth.
+    pub fn is_judged(self) -> bool {
+        self.magnified.is_none() && self.subject.is_judged()
+    }
+
+    /// The picture's size, where pictures have `size`.
+    pub fn size(self, size: [u32; 2]) -> [u32; 2] {
+        size.map(|side| side * self.magnified.unwrap_or(1))
+    }
+
     /// The same of another subject.
     pub fn with(self, subject: Subject) -> Self {
         Self { subject, ..self }
@@ -125,7 +151,9 @@ impl Variant {
     pub fn set(self, side: u32) -> Vec<(String, String)> {
         if let Some(waves) = self.waves {
             let sizes = ["waves.mesh", "waves.side"].map(|key| (key.to_owned(), side.to_string()));
-            return [("waves.variant".to_owned(), waves.to_owned())].into_iter().chain(sizes).collect();
+            let samples = self.magnified.map(|_| ("eye.samples".to_owned(), "1".to_owned()));
+            let own = [("waves.variant".to_owned(), waves.to_owned())];
+            return own.into_iter().chain(sizes).chain(samples).collect();
         }
         let own = [("maps.gather", self.gather), ("maps.copy", self.copy), ("maps.cull", self.cull)];
         let splat = self.splat.into_iter().flat_map(|splat| [("maps.traverse", "fetch"), ("maps.splat", splat)]);
@@ -152,6 +180,7 @@ pub fn asked(published: &Published, figure: &Figure) -> Result<Asked, String> {
     match published.id.as_str() {
         "maps.table5" => of_models(figure),
         "maps.text" => text::asked(&figure.column),
+        "waves.text" => claims::asked(figure),
         "waves.figure9" => Ok(Asked::Time(of_water(figure))),
         _ => {
             let (variant, part) = of_column(published, figure)?;
@@ -183,8 +212,12 @@ fn of_water(figure: &Figure) -> Place {
         "texture" => "texture",
         _ => "pixel",
     };
-    let variant = Variant { waves: Some(waves), ..COPY_32 }.with(Subject::Water);
-    Place { variant, side: side.parse().unwrap_or(LEAST), part: Part::Water }
+    Place { variant: water(waves, Subject::Water), side: side.parse().unwrap_or(LEAST), part: Part::Water }
+}
+
+/// A variant of water.
+pub fn water(waves: &'static str, subject: Subject) -> Variant {
+    Variant { waves: Some(waves), ..COPY_32 }.with(subject)
 }
 
 /// A preset in the set-up of the papers.

@@ -10,7 +10,7 @@ use std::{
 
 use super::{
     Extent, Watch,
-    asked::Place,
+    asked::{Asked, Place},
     columns::{self, Part, Variant},
     subject::Subject,
 };
@@ -29,6 +29,10 @@ use crate::{
     renderer::{self, Frame, Job, Providers, RenderError, Renderer},
     scene::Scene,
     store::Store,
+    truth::{
+        backward::{self, Beam, Useful},
+        trace::Space,
+    },
 };
 
 /// The layer that is judged.
@@ -38,6 +42,8 @@ const MOST_WARMUP: u32 = 8;
 /// Of the device's memory that all renderers together may take.
 const MEMORY: f64 = 0.5;
 const SEED: u64 = 1;
+/// Rays backward from the floor, of a quick run and of a whole one.
+const RAYS: [u64; 2] = [1 << 17, 1 << 24];
 /// s: no machine waits as long, and any clock can add it.
 const LONGEST: f64 = 1e9;
 /// Place of the photons that arrived in an account.
@@ -55,6 +61,8 @@ pub struct Measured {
     pub emitted: u64,
     /// Points that each stage of gathering draws, where it draws points: those of every step of a traversal among them.
     pub counts: Vec<(String, u64)>,
+    /// Invocations of each stage that computes, fragments of each that draws.
+    pub work: Vec<(String, u64)>,
     /// Of its scene.
     pub triangles: u64,
     /// Flux in the map over the flux that arrived in it.
@@ -72,11 +80,13 @@ pub struct Measured {
 /// Everything that was run.
 pub struct Run {
     pub all: Vec<Measured>,
-    /// In the order of `all`.
+    /// In the order of `all`, whose last, that no figure asks a time of, are not in it.
     pub timed: Timed,
     /// N that were not run, and why.
     pub left_out: LeftOut,
     pub reference: String,
+    /// Of rays backward, where the table asks for them.
+    pub useful: Vec<(Beam, Useful)>,
     pub warnings: Vec<String>,
 }
 
@@ -116,9 +126,12 @@ struct Ready {
 pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, watch: Watch) -> Result<Run, LabError> {
     let started = Instant::now();
     let late = |seconds: f64| started + Duration::from_secs_f64(seconds.min(LONGEST));
-    let (mut ready, left_out) = prepare(gpu, published, extent, watch)?;
-    let frames = (ready.len() as u32) * extent.rounds;
-    let say = format!("timing {} variants, {frames} frames, on {}", ready.len(), gpu.info().label());
+    let wanted = Wanted::of(published);
+    let (mut ready, left_out) = prepare(gpu, &wanted, extent, watch)?;
+    ready.sort_by_key(|ready| !wanted.is_timed(ready.variant, ready.side));
+    let count = ready.iter().filter(|ready| wanted.is_timed(ready.variant, ready.side)).count();
+    let frames = count as u32 * extent.rounds;
+    let say = format!("timing {count} variants, {frames} frames, on {}", gpu.info().label());
     let rounds = Rounds {
         rounds: extent.rounds,
         most_warmup: MOST_WARMUP,
@@ -126,7 +139,7 @@ pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, wat
         seed: SEED,
         until: Some(late(extent.seconds)),
     };
-    let timed = time(&mut ready, rounds, &mut |first| watch(if first { &say } else { "" }))?;
+    let timed = time(&mut ready[..count], rounds, &mut |first| watch(if first { &say } else { "" }))?;
     let mut warnings = timed.warnings(f64::from(gpu.info().timestamp_period) * 1e-6);
     warnings.extend(cut_short(&timed, extent));
     let all = ready.into_iter().map(|ready| read(gpu, ready)).collect::<Result<Vec<_>, _>>()?;
@@ -134,16 +147,34 @@ pub fn run(gpu: &Gpu, store: &Store, published: &Published, extent: &Extent, wat
     let mut begun = false;
     let left = late(extent.seconds + extent.truth_seconds).saturating_duration_since(Instant::now()).as_secs_f64();
     let seconds = extent.truth_seconds.min(left);
+    let judged: Vec<usize> = (0..all.len()).filter(|at| all[*at].variant.is_judged()).collect();
+    let pictures: Vec<Picture> =
+        pictures.into_iter().zip(&all).filter(|(_, m)| m.variant.is_judged()).map(|(p, _)| p).collect();
     let references = Auto { layer: LAYER, seconds, store }.references(&pictures, &mut |_| {
         let first = !std::mem::replace(&mut begun, true);
         watch(if first { "making the truth that the pictures are judged by" } else { "" })
     })?;
-    for ((measured, picture), truth) in all.iter_mut().zip(&pictures).zip(&references) {
-        measured.relmse = Some(judged_figure(picture, truth, LAYER)?);
-        measured.fitted = fitted_figure(picture, truth, LAYER)?;
+    for ((at, picture), truth) in judged.into_iter().zip(&pictures).zip(&references) {
+        all[at].relmse = Some(judged_figure(picture, truth, LAYER)?);
+        all[at].fitted = fitted_figure(picture, truth, LAYER)?;
     }
     let reference = references.first().map(|truth| truth.file.clone()).unwrap_or_default();
-    Ok(Run { all, timed, left_out, reference, warnings })
+    let useful = useful(published, extent)?;
+    Ok(Run { all, timed, left_out, reference, useful, warnings })
+}
+
+/// The rays backward that a table asks for, of the paper's water.
+fn useful(published: &Published, extent: &Extent) -> Result<Vec<(Beam, Useful)>, LabError> {
+    let asked = published.figures.iter().filter_map(|figure| columns::asked(published, figure).ok());
+    let beams = asked.filter_map(|asked| if let Asked::Claim(claim) = asked { claim.beam() } else { None });
+    let mut beams: Vec<Beam> = beams.collect();
+    beams.dedup();
+    if beams.is_empty() {
+        return Ok(Vec::new());
+    }
+    let scene = Subject::Water.load()?;
+    let (space, rays) = (Space::new(&scene), RAYS[usize::from(!extent.quick)]);
+    Ok(beams.into_iter().map(|beam| (beam, backward::useful(&space, beam, rays, SEED))).collect())
 }
 
 /// Fewer rounds than were asked for.
@@ -165,6 +196,7 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
     let layers = renderer.layers()?;
     let provenance = Provenance::new(&job, &frame, gpu.info(), Vec::new());
     let counters = renderer.counters(&frame)?;
+    let work = counters.iter().filter_map(|(stage, c)| Some((stage.clone(), c.fragments.or(c.invocations)?))).collect();
     let counts = counters.iter().filter(|(stage, _)| Part::Gather.holds(stage));
     let counts = counts.filter_map(|(stage, c)| Some((stage.clone(), c.points?))).collect();
     let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
@@ -182,6 +214,7 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
             valid,
             emitted,
             counts,
+            work,
             triangles: job.scene.triangles(),
             kept,
             relmse: None,
@@ -193,17 +226,36 @@ fn read(gpu: &Gpu, ready: Ready) -> Result<(Picture, Measured), LabError> {
     ))
 }
 
-/// The N of the table, rising, and the variants that are wanted at each.
-fn wanted(published: &Published) -> Vec<(u32, Vec<Variant>)> {
-    let mut wanted: BTreeMap<u32, Vec<Variant>> = BTreeMap::new();
-    let asked = published.figures.iter().filter_map(|figure| columns::asked(published, figure).ok());
-    for Place { variant, side, .. } in asked.flat_map(|asked| asked.places()) {
-        let variants = wanted.entry(side).or_default();
-        if !variants.contains(&variant) {
-            variants.push(variant);
+/// What a table wants.
+struct Wanted {
+    /// Its N, rising, and the variants at each.
+    sides: BTreeMap<u32, Vec<Variant>>,
+    timed: Vec<Place>,
+}
+
+impl Wanted {
+    fn of(published: &Published) -> Self {
+        let (mut sides, mut timed): (BTreeMap<u32, Vec<Variant>>, _) = Default::default();
+        for asked in published.figures.iter().filter_map(|figure| columns::asked(published, figure).ok()) {
+            for Place { variant, side, .. } in asked.places() {
+                let variants = sides.entry(side).or_default();
+                if !variants.contains(&variant) {
+                    variants.push(variant);
+                }
+            }
+            Vec::extend(&mut timed, asked.timed());
         }
+        Self { sides, timed }
     }
-    wanted.into_iter().collect()
+
+    fn is_timed(&self, variant: Variant, side: u32) -> bool {
+        self.timed.iter().any(|place| place.variant == variant && place.side == side)
+    }
+
+    /// Frames of a variant at most, without its first.
+    fn frames(&self, variant: Variant, side: u32, extent: &Extent) -> f64 {
+        if self.is_timed(variant, side) { f64::from(extent.rounds + MOST_WARMUP) } else { 2.0 }
+    }
 }
 
 /// Scenes read so far.
@@ -219,14 +271,14 @@ fn scene(scenes: &mut Scenes, subject: Subject) -> Result<Arc<Scene>, LabError> 
 }
 
 /// Renderers for every N that fits, smallest first, and why others do not.
-fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> Result<(Vec<Ready>, LeftOut), LabError> {
+fn prepare(gpu: &Gpu, wanted: &Wanted, extent: &Extent, watch: Watch) -> Result<(Vec<Ready>, LeftOut), LabError> {
     let (mut ready, mut left_out, mut scenes) = (Vec::new(), Vec::new(), Vec::new());
     let started = Instant::now();
     let (mut frames_s, mut last, mut bytes) = (0.0, 0.0, 0);
-    for (side, variants) in wanted(published) {
-        let frames = f64::from(extent.rounds + MOST_WARMUP);
-        let growth: f64 = variants.iter().map(|variant| variant.growth()).sum();
-        let ahead = started.elapsed().as_secs_f64() + frames_s + frames * growth * last;
+    for (&side, variants) in &wanted.sides {
+        let frames = |variant: &Variant| wanted.frames(*variant, side, extent);
+        let growth: f64 = variants.iter().map(|variant| frames(variant) * variant.growth()).sum();
+        let ahead = started.elapsed().as_secs_f64() + frames_s + growth * last;
         let too_large = format!("--quick takes N up to {}", extent.most_side);
         let why = if side > extent.most_side {
             Some(too_large)
@@ -238,11 +290,11 @@ fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> R
             if watch(&format!("preparing {}", names.join("; "))).is_break() {
                 return Err(LabError::Interrupted);
             }
-            match of_side(gpu, &mut scenes, (side, &variants), extent, bytes)? {
-                Ok((made, taken, frame_s)) => {
+            match of_side(gpu, &mut scenes, (side, variants), extent, bytes)? {
+                Ok((made, taken, each_s)) => {
                     ready.extend(made);
-                    (bytes, last) = (taken, frame_s / variants.len() as f64);
-                    frames_s += frames * frame_s;
+                    (bytes, last) = (taken, each_s.iter().sum::<f64>() / variants.len() as f64);
+                    frames_s += variants.iter().zip(each_s).map(|(variant, s)| frames(variant) * s).sum::<f64>();
                     None
                 }
                 Err(why) => Some(why),
@@ -253,8 +305,8 @@ fn prepare(gpu: &Gpu, published: &Published, extent: &Extent, watch: Watch) -> R
     Ok((ready, left_out))
 }
 
-/// Renderers of one N, the bytes that all take then, and what one frame of each takes in all, s; or why it does not fit.
-type OfSide = Result<(Vec<Ready>, u64, f64), String>;
+/// Renderers of one N, the bytes that all take then, and what a frame of each takes, s; or why it does not fit.
+type OfSide = Result<(Vec<Ready>, u64, Vec<f64>), String>;
 
 fn of_side(
     gpu: &Gpu,
@@ -263,7 +315,7 @@ fn of_side(
     extent: &Extent,
     mut bytes: u64,
 ) -> Result<OfSide, LabError> {
-    let (mut made, mut seconds) = (Vec::new(), 0.0);
+    let (mut made, mut seconds) = (Vec::new(), Vec::new());
     for &variant in variants {
         let settings = variant.settings(side).expect("the settings of a variant are shipped ones: a test runs them");
         let job = Job {
@@ -271,7 +323,7 @@ fn of_side(
             providers: Providers::of(methods::find(variant.method()).map_err(RenderError::from)?),
             settings,
             camera: "region".to_owned(),
-            size: extent.size,
+            size: variant.size(extent.size),
         };
         let planned = renderer::plan(&job)?;
         bytes += planned.plan.bytes();
@@ -288,7 +340,7 @@ fn of_side(
         renderer.frame(&Frame::default())?; // the first one compiles, where drivers put that off
         let start = Instant::now();
         renderer.frame(&Frame::default())?;
-        seconds += start.elapsed().as_secs_f64();
+        seconds.push(start.elapsed().as_secs_f64());
         made.push(Ready { variant, side, job, renderer });
     }
     Ok(Ok((made, bytes, seconds)))

@@ -2,6 +2,7 @@
 //! picture, which no paper printed.
 
 mod asked;
+mod claims;
 mod columns;
 mod measure;
 mod report;

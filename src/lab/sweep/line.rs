@@ -7,6 +7,7 @@ use crate::{
     gpu::DeviceInfo,
     lab::{
         Comparison, DeviceRow, MEASURES,
+        compare::{DEBIASED, FITTED},
         provenance::in_force,
         timing::{Series, Summary},
     },
@@ -80,7 +81,10 @@ pub(super) fn error(comparison: &Comparison) -> Value {
     });
     if let Some(fitted) = comparison.fitted {
         error["scale"] = Number(fitted.scale).into();
-        error["measures"]["relmse_fitted"] = measure(fitted.relmse);
+        error["measures"][FITTED] = measure(fitted.relmse);
+    }
+    if let Some(debiased) = comparison.debiased {
+        error["measures"][DEBIASED] = measure(debiased);
     }
     error
 }

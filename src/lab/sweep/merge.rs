@@ -47,7 +47,7 @@ pub fn merge(bench: &Bench) -> Merged {
 }
 
 /// Columns beside what points set: a name, and where in a line it stands.
-const COLUMNS: [(&str, &str); 23] = [
+const COLUMNS: [(&str, &str); 25] = [
     ("photons", "/photons"),
     ("lights", "/lights"),
     ("triangles", "/triangles"),
@@ -64,6 +64,8 @@ const COLUMNS: [(&str, &str); 23] = [
     ("relmse", "/error/measures/relmse/value"),
     ("relmse low", "/error/measures/relmse/low"),
     ("relmse high", "/error/measures/relmse/high"),
+    ("relmse debiased", "/error/measures/relmse_debiased/value"),
+    ("relmse debiased error", "/error/measures/relmse_debiased/truth_noise"),
     ("relmse fitted", "/error/measures/relmse_fitted/value"),
     ("scale", "/error/scale"),
     ("energy ratio", "/error/measures/energy_ratio/value"),

@@ -8,9 +8,9 @@
 
 use glam::DVec3;
 
-use super::{shade, suns, with};
+use super::{super::LeftOut, shade, suns, with};
 use crate::{
-    gpu::{BufferId, Lifetime, PassBuilder},
+    gpu::{BufferId, Lifetime, PassBuilder, Phase},
     passes::{
         PlanError, Work, accel,
         eye::{self, SurfaceProvider},
@@ -42,6 +42,9 @@ const GROUP: u32 = 8;
 /// Bytes of `WaterRay` without bands, and of a band without and with a disc (`glsl/waves/inverse.glsl`).
 const RAY_BYTES: u64 = 24;
 const BAND_BYTES: [u64; 2] = [8, 24];
+/// Invocations of work groups of one row, and bytes of `LeftRow` (`glsl/waves/inverse_left.comp`).
+const ROWS: u32 = 64;
+const LEFT_BYTES: u64 = 8;
 /// Bytes of `WaterBounds`.
 const BOUNDS_BYTES: u64 = 32;
 /// The largest buffer that every device binds.
@@ -76,11 +79,12 @@ struct Inverse {
 ///
 /// # Errors
 /// Where no buffer holds the rays.
-pub fn plan(work: &mut Work<'_>) -> Result<Option<SurfaceProvider>, PlanError> {
+pub fn plan(work: &mut Work<'_>) -> Result<Option<(SurfaceProvider, LeftOut)>, PlanError> {
     let Some(water) = Water::as_traced(work.plan, work.scene) else { return Ok(None) };
     let inverse = Inverse::plan(work, water)?;
     inverse.stages(work);
-    Ok(Some(inverse.provider(work.scene)))
+    let left_out = inverse.left_out(work);
+    Ok(Some((inverse.provider(work.scene), left_out)))
 }
 
 impl Inverse {
@@ -127,9 +131,22 @@ impl Inverse {
         }
     }
 
+    /// The pass that counts the triangles that light nothing, outside the timed frames.
+    fn left_out(&self, work: &mut Work<'_>) -> LeftOut {
+        let rows = self.grid.lights * self.grid.cells[1];
+        let buffer = work.plan.buffer("waves/left", rows * LEFT_BYTES, Lifetime::Persistent);
+        self.give(work.plan.pass("waves/left"))
+            .phase(Phase::Account)
+            .read("water_rays", self.rays)
+            .write("water_left", buffer)
+            .dispatch("waves/inverse_left.comp", [(rows as u32).div_ceil(ROWS), 1, 1], ROWS);
+        LeftOut { buffer, pieces: 2 * rows * self.grid.cells[0] }
+    }
+
     fn provider(&self, scene: &Scene) -> SurfaceProvider {
         let (mut defines, mut offers) = self.water.parts();
         defines.extend(self.defines.iter().cloned());
+        defines.push(("SEARCHES", String::new()));
         if let Some(mask) = shade::blocks(scene, &self.water) {
             defines.push(("BLOCKED", mask.to_owned()));
         }

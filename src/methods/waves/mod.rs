@@ -220,7 +220,9 @@ fn inverse(work: &mut Work<'_>) -> Result<Planned, PlanError> {
         return Ok(Planned::LeftOut(reason));
     }
     Ok(match inverse::plan(work)? {
-        Some(surface) => Planned::Provided(Provided { surface: Some(surface), ..Provided::default() }),
+        Some((surface, left_out)) => {
+            Planned::Provided(Provided { surface: Some(surface), left_out: Some(left_out), ..Provided::default() })
+        }
         None => Planned::LeftOut(suns::NO_WATER),
     })
 }

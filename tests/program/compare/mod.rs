@@ -194,6 +194,55 @@ fn thresholds_decide_the_exit_code() {
     assert!(ran.err.contains("rmse") && ran.err.contains("i.exr") && !ran.out.is_empty(), "{}", ran.err);
 }
 
+/// v = 0.01 at r = 1, ε = 0.04, w = 1/1.04: 0.1 off scores 0.01 w, of which 0.01 (w + 0.4 w² + 0.01 (4 w³ − w²)) is noise; 1 off
+/// scores w, and little less without it.
+#[test]
+fn what_noise_adds_is_taken_off_where_it_is_known() {
+    let folder = folder();
+    let noisy = Picture { variance: Some(0.01), ..Picture::of(1.0) }.write(&folder, "noisy.exr");
+    let debiased = |image: &str, reference: &str| {
+        compare(&[image, "--reference", reference, "--format", "json"]).json()["results"][0]["relmse_debiased"].clone()
+    };
+    let (near, far) = (Picture::of(1.1).write(&folder, "near.exr"), Picture::of(2.0).write(&folder, "far.exr"));
+    let (left, known) = (debiased(&near, &noisy), debiased(&far, &noisy));
+    let value = |of: &Value| of["value"].as_f64().unwrap_or(f64::NAN);
+    let w: f64 = 1.0 / 1.04;
+    let expected = 0.01 * w - 0.01 * (w + 0.4 * w * w + 0.01 * (4.0 * w.powi(3) - w * w));
+    assert!((value(&left) / expected - 1.0).abs() < 1e-4, "{left} for {expected}");
+    assert!(left["low"].as_f64() < Some(value(&left)) && value(&left) < left["high"].as_f64().unwrap(), "{left}");
+    assert!((value(&known) - 1.0 / 1.04).abs() < 0.1 && known["below_noise"] == false, "{known}");
+    let code =
+        |image: &str, reference: &str, limit: &str| compare(&[image, "--reference", reference, "--fail-above", limit]);
+    assert_eq!(code(&near, &noisy, "relmse_debiased=0.01").code, Some(0), "it is but noise");
+    assert_eq!(code(&near, &noisy, "relmse=0.009").code, Some(3));
+    assert_eq!(code(&far, &noisy, "relmse_debiased=0.01").code, Some(3));
+    let exact = Picture::of(1.0).write(&folder, "exact.exr");
+    assert!(debiased(&near, &exact).is_null());
+    let ran = code(&near, &exact, "relmse_debiased=0.01");
+    assert!(ran.code == Some(3) && ran.err.contains("not known") && ran.err.contains("exact.exr"), "{}", ran.err);
+    let cells =
+        Picture { variance: Some(0.01), ..Picture::of(1.0) }.about("estimator", "cells").write(&folder, "c.exr");
+    assert!(debiased(&near, &cells).is_null(), "what cells state is no noise");
+}
+
+/// 0.5 against 1: raw 0.25/1.04, fitted nothing; a picture in W/m² has no other scale than one.
+#[test]
+fn a_limit_can_be_for_what_the_best_scale_leaves() {
+    let folder = folder();
+    let reference = Picture::of(1.0).write(&folder, "r.exr");
+    let relative = Picture::of(0.5).about("surface", "relative").write(&folder, "relative.exr");
+    let absolute = Picture::of(0.5).write(&folder, "absolute.exr");
+    let judged = |image: &str, limit: &str| compare(&[image, "--reference", &reference, "--fail-above", limit]);
+    assert_eq!(judged(&relative, "relmse_fitted=0.01").code, Some(0));
+    assert_eq!(judged(&relative, "relmse=0.01").code, Some(3));
+    let ran = judged(&absolute, "relmse_fitted=0.01");
+    assert!(
+        ran.code == Some(3) && ran.err.contains("relmse_fitted of") && ran.err.contains("absolute.exr"),
+        "{}",
+        ran.err
+    );
+}
+
 /// The union of both masks is left out and counted; more than 5 % of it is refused.
 #[test]
 fn masks_are_joined() {

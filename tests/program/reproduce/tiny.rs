@@ -89,6 +89,44 @@ fn what_is_right_up_to_a_scale_is_told_raw_and_fitted() {
     assert_quiet(&gpu);
 }
 
+/// The water paper's prose: constants are the paper's, exponents those of what is counted, shares and errors within bounds.
+#[test]
+fn what_the_water_papers_prose_claims_is_measured() {
+    let gpu = gpu();
+    let report = run(&gpu, "waves.text", &Extent { rounds: 2, size: [16, 16], ..extent() });
+    let rows = report["rows"].as_array().unwrap();
+    let missing: Vec<&Value> = rows.iter().filter(|row| row["measured"].is_null()).map(|row| &row["column"]).collect();
+    assert_eq!(missing, ["index_of_refraction"], "what the scene says is no measurement");
+    let all = |column: &str| {
+        let found: Vec<f64> = rows
+            .iter()
+            .filter(|row| row["column"] == column)
+            .map(|row| row["measured"]["value"].as_f64().unwrap())
+            .collect();
+        assert!(!found.is_empty(), "{column}");
+        found
+    };
+    for constant in
+        ["octaves", "wave_size", "factor", "speed", "vertex_size", "texture_work_exponent", "pixel_work_exponent"]
+    {
+        let row = rows.iter().find(|row| row["column"] == constant).unwrap();
+        assert_eq!(row["measured"]["value"].as_f64(), row["published"].as_f64(), "{constant}");
+    }
+    // e^-0.24 is left of a metre; depths are within some centimetres of 0.8 m.
+    assert!(all("absorbed_per_metre").iter().all(|share| (share - (1.0 - f64::exp(-0.24))).abs() < 0.01));
+    // A thousandth of what is claimed: the disc covers 1e-5 of the hemisphere above water.
+    assert!(all("useful_rays_least")[0] < 1e-3);
+    let vertical = all("useful_vertical_rays")[0];
+    assert!(vertical > 0.0 && vertical < 0.1, "{vertical}");
+    assert_eq!(all("shortcut_relmse").len(), 3);
+    for [raw, fitted] in all("shortcut_relmse").into_iter().zip(all("shortcut_relmse_fitted")).map(|(a, b)| [a, b]) {
+        assert!(0.0 < fitted && fitted <= raw, "{fitted} {raw}");
+    }
+    assert!(all("shortcut_contrast_deeper")[0] > 1.0, "deeper is sharper");
+    assert!(all("contrast_at_60_degrees")[0] > 0.0 && all("texture_relmse")[0] < 0.1);
+    assert_quiet(&gpu);
+}
+
 #[test]
 fn what_the_time_does_not_allow_is_left_out_and_said() {
     let gpu = gpu();

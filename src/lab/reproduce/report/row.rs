@@ -49,6 +49,7 @@ fn unit(published: &Published, column: &str) -> &'static str {
         ("maps.table4" | "lines.table2", _) => "fps",
         (_, name) if name.ends_with("fps") => "fps",
         ("maps.table1" | "maps.table2" | "maps.table3" | "maps.figure7" | "waves.figure9" | "lines.table1", _) => "ms",
+        (_, "speed") => "rad/s",
         (_, "sun_disc_degrees") => "degrees",
         (_, "mental_ray_minutes") => "minutes",
         (_, "absorbed_per_metre") => "1/m",
