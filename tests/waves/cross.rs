@@ -43,7 +43,7 @@ fn power(error: &[f64]) -> [f64; 2] {
 }
 
 #[test]
-fn cubic_filters_leave_a_fiftieth_of_the_cross() {
+fn cubic_filters_leave_a_thirtieth_of_the_cross_at_most() {
     let gpu = gpu();
     let size = [PIXELS as u32; 2];
     let width = SUN.to_string();
