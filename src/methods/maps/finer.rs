@@ -62,7 +62,7 @@ pub struct Finer {
     /// What errors are held against.
     lights: BufferId,
     most: u32,
-    /// The sum of errors that is small enough.
+    /// The sum of a view's errors that is small enough.
     enough: f32,
 }
 
@@ -139,7 +139,8 @@ impl Finer {
             job.work.plan.upload_once("maps/cells.rows", &job.emissions.iter().flat_map(row).collect::<Vec<_>>());
         let lights: Vec<_> = job.emissions.iter().map(|emission| held_against(job, emission)).collect();
         let lights = job.work.plan.upload("maps/cells.lights", &lights);
-        let texels = f64::from(side).powi(2);
+        // Views share what the map may be wrong by.
+        let texels = f64::from(side).powi(2) / job.emissions.len().max(1) as f64;
         let enough = (job.work.settings.real(&ENOUGH).unwrap_or_default() * texels) as f32;
         Some(Self { lists, rows, lights, most, enough })
     }
