@@ -26,7 +26,6 @@ use crate::{
 };
 
 pub use moving::Moved;
-use plan::plan_with;
 pub use plan::{Planned, Providers, plan};
 pub use read::{Counted, Dump, Energy, Unresolved, resource};
 pub use show::LAYERS;
@@ -148,13 +147,11 @@ impl Renderer {
     }
 
     /// As [`Self::with_sources`], with the plan of this very job made before. What hangs on the kind of device is planned again.
-    pub fn planned(gpu: &Gpu, job: &Job, mut planned: Planned, sources: Sources) -> Result<Self, RenderError> {
+    pub fn planned(gpu: &Gpu, job: &Job, planned: Planned, sources: Sources) -> Result<Self, RenderError> {
         let on = job.on(gpu);
-        if on.settings != job.settings {
-            let mut trees = std::mem::take(&mut planned.trees);
-            let again = plan_with(&on, &mut trees)?;
-            planned = Planned { trees, plan_ms: planned.plan_ms + again.plan_ms, ..again };
-        }
+        let hangs = |method: &&dyn Method| method.hangs_on_device(&on.settings, &on.scene);
+        let again = on.settings != job.settings && on.providers.methods().iter().any(hangs);
+        let planned = if again { plan(&on)? } else { planned };
         Self::prepare(gpu, &on, planned, sources, Store::open(), None)
     }
 

@@ -172,6 +172,10 @@ pub trait Method: Sync {
     fn reads(&self) -> &'static [&'static str] {
         &[]
     }
+    /// Whether the kind of device ([`Settings::on`]) decides what it plans.
+    fn hangs_on_device(&self, _: &Settings, _: &Scene) -> bool {
+        false
+    }
     /// Its stages, which `plan` lists as left out where the scene cannot show what they make.
     fn stages(&self) -> &'static [&'static str];
     /// What its picture does not show well, and the remedy.

@@ -1,8 +1,8 @@
 //! Merging with exact books, behind both hierarchies: no light is lost or made, and the map keeps its moments.
 
 use nephroid::{
-    gpu::{Gpu, Work},
-    renderer::{self, Dump, Job},
+    gpu::{Gpu, Sources, Work},
+    renderer::{self, Dump, Job, Renderer},
 };
 
 use super::{
@@ -168,6 +168,12 @@ fn large_fixed_splats_are_drawn() {
         assert_eq!(matches!(gather.work, Work::Raster { .. }), drawn, "{set:?}");
         assert_eq!(plan.left_out.iter().any(|l| l.reason.contains("maps.raster_from")), drawn, "{set:?}");
     }
+    // A plan made before there was a device is made for that of a GPU, and again where it must be.
+    let gpu = super::common::gpu();
+    let job = job("glass-sphere", &[("maps.splat_size", "8")], "region", [8, 8]);
+    let renderer = Renderer::planned(&gpu, &job, renderer::plan(&job).unwrap(), Sources::default()).unwrap();
+    let gather = renderer.plan().passes.iter().find(|pass| pass.name == "maps/gather").unwrap();
+    assert_eq!(matches!(gather.work, Work::Raster { .. }), gpu.info().is_software());
 }
 
 #[test]

@@ -55,6 +55,13 @@ fn raster_from(settings: &Settings) -> u32 {
     }
 }
 
+/// Whether the kind of device decides which splats are drawn.
+pub fn hangs_on_device(settings: &Settings, axes: Axes<'_>) -> bool {
+    settings.whole(&RASTER_FROM) == 0
+        && axes.traverse == "compute"
+        && (axes.splat == "fixed" || ROUND.contains(&axes.splat))
+}
+
 /// Whether fixed splats are so large that all of them are drawn.
 pub fn all_drawn(job: &Job<'_>, axes: Axes<'_>) -> bool {
     let size = job.work.settings.whole(&super::SPLAT_SIZE);

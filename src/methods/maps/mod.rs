@@ -212,6 +212,10 @@ impl Method for Maps {
         true
     }
 
+    fn hangs_on_device(&self, settings: &Settings, scene: &Scene) -> bool {
+        large::hangs_on_device(settings, Axes::of(settings, scene))
+    }
+
     fn stages(&self) -> &'static [&'static str] {
         &["light/photons", "maps/gather", "maps/resolve", "light/account"]
     }
