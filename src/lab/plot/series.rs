@@ -7,6 +7,7 @@ use super::{
     pareto::{Front, mark_front},
     result::Point,
 };
+use crate::methods;
 
 /// The axis along which a series runs: never part of its name.
 const ALONG: &str = "light.side";
@@ -38,23 +39,38 @@ pub fn groups(points: &[Point]) -> Vec<Group<'_>> {
 /// As [`groups`], of series that run along the setting `along`, and along all that begin with `scene`.
 pub fn along_groups<'a>(points: &'a [Point], along: &str, scene: &str) -> Vec<Group<'a>> {
     let along = |key: &str| key == along || (along == "photons" && key == ALONG) || key.starts_with(scene);
-    let mut scenes: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
+    let mut by_scene: BTreeMap<&str, Vec<&Point>> = BTreeMap::new();
     for point in points {
-        scenes.entry(title(point, &along)).or_default().push(point);
+        by_scene.entry(&point.scene).or_default().push(point);
     }
-    scenes.into_iter().map(|(title, points)| Group { title, series: split(&points, &along) }).collect()
+    let mut titled: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
+    for points in by_scene.values() {
+        let changed = changed(points, &along);
+        for point in points {
+            titled.entry(title(point, &changed)).or_default().push(point);
+        }
+    }
+    // Of all points, so that a series is called the same in every panel.
+    let differing = differing(points, &along);
+    titled.into_iter().map(|(title, points)| Group { title, series: split(&points, &differing) }).collect()
 }
 
-fn title(point: &Point, along: &dyn Fn(&str) -> bool) -> String {
+/// Of one scene's own settings, those in which its points differ: what all share needs no place in a title.
+fn changed<'a>(points: &[&'a Point], along: &dyn Fn(&str) -> bool) -> Vec<&'a str> {
+    let keys: BTreeSet<&str> = points.iter().flat_map(|point| point.set.keys()).map(String::as_str).collect();
+    let differs = |key: &&str| points.iter().map(|point| point.set.get(*key)).collect::<BTreeSet<_>>().len() > 1;
+    keys.into_iter().filter(|key| key.starts_with(OF_SCENE) && !along(key)).filter(differs).collect()
+}
+
+fn title(point: &Point, changed: &[&str]) -> String {
     let [width, height] = point.size;
-    let changed = point.set.iter().filter(|(key, _)| key.starts_with(OF_SCENE) && !along(key));
-    let changed: String = changed.map(|(key, value)| format!(", {}={value}", &key[OF_SCENE.len()..])).collect();
+    let stated = changed.iter().filter_map(|key| Some((key, point.set.get(*key)?)));
+    let stated: String = stated.map(|(key, value)| format!(", {}={value}", &key[OF_SCENE.len()..])).collect();
     let camera = if point.camera.is_empty() { String::new() } else { format!(", camera {}", point.camera) };
-    format!("{}{changed}{camera}, {width} × {height}", point.scene)
+    format!("{}{stated}{camera}, {width} × {height}", point.scene)
 }
 
-fn split<'a>(points: &[&'a Point], along: &dyn Fn(&str) -> bool) -> BTreeMap<Name, Vec<&'a Point>> {
-    let differing = differing(points, along);
+fn split<'a>(points: &[&'a Point], differing: &[&str]) -> BTreeMap<Name, Vec<&'a Point>> {
     let devices: BTreeSet<_> = points.iter().map(|point| &point.device).collect();
     let mut series: BTreeMap<Name, Vec<&Point>> = BTreeMap::new();
     for point in points {
@@ -69,25 +85,22 @@ fn split<'a>(points: &[&'a Point], along: &dyn Fn(&str) -> bool) -> BTreeMap<Nam
     series
 }
 
-/// Keys that some point sets, of which two points that have them differ.
-fn differing<'a>(points: &[&'a Point], along: &dyn Fn(&str) -> bool) -> Vec<&'a str> {
+/// Keys that some point sets, and in which points differ.
+fn differing<'a>(points: &'a [Point], along: &dyn Fn(&str) -> bool) -> Vec<&'a str> {
     let along = |key: &str| along(key) || key.starts_with(OF_SCENE);
     let keys: BTreeSet<_> =
         points.iter().flat_map(|point| point.set.keys()).map(String::as_str).filter(|key| !along(key)).collect();
-    let differs = |key: &&str| {
-        let mut values: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
-        for point in points {
-            values.entry(&point.method).or_default().insert(value(point, key));
-        }
-        let stated: BTreeSet<_> = values.values().flatten().flatten().collect();
-        stated.len() > 1 || values.values().any(|of_method| of_method.len() > 1)
-    };
+    let differs = |key: &&str| points.iter().map(|point| value(point, key)).collect::<BTreeSet<_>>().len() > 1;
     keys.into_iter().filter(differs).collect()
 }
 
-/// What the point sets, or else what is in force.
+/// What the point sets, or else what is in force; nothing of another method's settings.
 fn value<'a>(point: &'a Point, key: &str) -> Option<&'a str> {
-    point.set.get(key).or_else(|| point.settings.get(key)).map(String::as_str)
+    let others = key
+        .split_once('.')
+        .is_some_and(|(owner, _)| owner != point.method && methods::ALL.iter().any(|method| method.name() == owner));
+    let of_point = (!others).then(|| point.settings.get(key)).flatten();
+    point.set.get(key).or(of_point).map(String::as_str)
 }
 
 /// A panel of a group, `mark` giving the point's place, if it has one. Series without marks are left out.

@@ -93,6 +93,29 @@ fn the_csv_holds_every_point_drawn() {
 }
 
 #[test]
+fn titles_and_names_state_what_differs_and_no_setting_of_another_method() {
+    let depth = "scene.objects.floor.quad.center";
+    let of = |method: &str, key: &str, value: &str, at: &str| {
+        let mut point = point("s", method, 64, 1.0, json!(1.0));
+        let set = [(depth, at), ("scene.lights.sun.power", "3"), (key, value)];
+        point["set"] = set.into_iter().collect();
+        point["settings"] = json!({ "maps.gather": "own", "waves.variant": "pixel", key: value });
+        point["key"] = json!(format!("{method} {value} {at}"));
+        point
+    };
+    let deep = |at| [of("maps", "maps.gather", "cells", at), of("waves", "waves.variant", "inverse", at)];
+    let mut points = [deep("-1"), deep("-2")].concat();
+    points.push(of("waves", "waves.variant", "vertex", "-2"));
+    let Body::Marks(panels) = chart_of(&points, Kind::ErrorTime).body else { panic!("bars") };
+    let titles: Vec<_> = panels.iter().map(|panel| panel.title.as_str()).collect();
+    let shared = ", camera region, 64 × 64";
+    assert_eq!(titles, ["-1", "-2"].map(|at| format!("s, objects.floor.quad.center={at}{shared}")));
+    let names = |at: usize| panels[at].series.iter().map(|series| series.name.as_str()).collect::<Vec<_>>();
+    assert_eq!(names(0), ["maps maps.gather=cells", "waves waves.variant=inverse"]);
+    assert_eq!(names(1), ["maps maps.gather=cells", "waves waves.variant=inverse", "waves waves.variant=vertex"]);
+}
+
+#[test]
 fn what_has_no_place_is_drawn_at_the_edge_and_said() {
     let chart = chart_of(&hard(), Kind::ErrorTime);
     let said = chart.caption.iter().find(|line| line.starts_with("Hollow")).expect("a sentence on the edge");
