@@ -117,7 +117,7 @@ struct SceneRow {
 impl ScenesReport {
     /// From what the program carries.
     pub fn new() -> Self {
-        let scenes = Scene::shipped().map(|(name, title)| SceneRow { name, title }).collect();
+        let scenes = Scene::shipped().chain(Scene::of_papers()).map(|(name, title)| SceneRow { name, title }).collect();
         Self { schema: "nephroid.scenes/1", scenes }
     }
 }

@@ -67,7 +67,7 @@ fn find(name_or_path: &str) -> Result<Found, SceneError> {
         return Ok(Found { name, file: name_or_path.to_owned(), text, files: Files::Beside(folder) });
     }
     let Some((file, text)) = shipped::text(name_or_path) else {
-        let remedy = near(name_or_path, shipped::scenes().map(|(name, _)| name));
+        let remedy = near(name_or_path, shipped::scenes().chain(shipped::papers()).map(|(name, _)| name));
         return Err(unreadable(
             name_or_path,
             "the name of a shipped scene, or a path that ends in .toml",

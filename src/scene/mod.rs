@@ -339,9 +339,14 @@ impl Scene {
         load::load(if is_shipped { name } else { file }, overrides)
     }
 
-    /// Name and title of every scene inside the program, sorted by name.
+    /// Name and title of every scene inside the program that methods are judged on, sorted by name.
     pub fn shipped() -> impl Iterator<Item = (&'static str, String)> {
         shipped::scenes().map(|(name, text)| (name, shipped::title(text)))
+    }
+
+    /// As [`Scene::shipped`], of the scenes that stand in for a paper's own.
+    pub fn of_papers() -> impl Iterator<Item = (&'static str, String)> {
+        shipped::papers().map(|(name, text)| (name, shipped::title(text)))
     }
 
     /// Triangles of meshes, and two of each quad; other shapes have none.

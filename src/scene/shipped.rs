@@ -3,17 +3,27 @@ use include_dir::{Dir, include_dir};
 
 static SCENES: Dir = include_dir!("$CARGO_MANIFEST_DIR/scenes");
 
-/// Name and text of every shipped scene, sorted by name.
+/// Name and text of every shipped scene that methods are judged on, sorted by name.
 pub fn scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let scene =
-        |file: &'static include_dir::File| Some((file.path().to_str()?.strip_suffix(".toml")?, file.contents_utf8()?));
-    let mut scenes: Vec<_> = SCENES.files().filter_map(scene).collect();
-    scenes.sort();
-    scenes.into_iter()
+    named(&SCENES)
 }
 
 /// Scenes that stand in for a paper's own: loaded by name like any other, and no part of what methods are judged on.
 const PAPERS: &str = "papers";
+
+/// As [`scenes`], of those.
+pub fn papers() -> impl Iterator<Item = (&'static str, &'static str)> {
+    SCENES.get_dir(PAPERS).into_iter().flat_map(named)
+}
+
+fn named(folder: &'static Dir) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let scene = |file: &'static include_dir::File| {
+        Some((file.path().file_name()?.to_str()?.strip_suffix(".toml")?, file.contents_utf8()?))
+    };
+    let mut scenes: Vec<_> = folder.files().filter_map(scene).collect();
+    scenes.sort();
+    scenes.into_iter()
+}
 
 /// Place and text of a shipped scene.
 pub fn text(name: &str) -> Option<(String, &'static str)> {

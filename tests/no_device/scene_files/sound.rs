@@ -75,7 +75,9 @@ fn shipped_scenes_load_by_name_and_have_titles() {
             "water"
         ]
     );
-    for (name, title) in Scene::shipped() {
+    let of_papers: Vec<_> = Scene::of_papers().map(|(name, _)| name).collect();
+    assert_eq!(of_papers, ["sea", "two-lights", "waves"]);
+    for (name, title) in Scene::shipped().chain(Scene::of_papers()) {
         let scene = load(name, &[]).unwrap_or_else(|error| panic!("{error}"));
         assert!(!title.is_empty() && scene.title == title && scene.name == name);
         assert_eq!(scene.has_specular(), name != "diffuse");
