@@ -47,4 +47,10 @@ LightSample light_sample(ivec2 texel) {
     return light_sample(texel, 1);
 }
 
+// At a corner of such parts of texels, with the footprint of the part after it.
+LightSample light_corner(ivec2 at, int finer) {
+    float footprint = light_sample(min(at, finer * push.size - 1), finer).footprint;
+    return light_sample_at(place_in_view(vec2(at), finer), footprint);
+}
+
 #endif

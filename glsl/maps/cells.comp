@@ -8,6 +8,9 @@
 #ifdef REFINED
 #define LISTS
 #include "maps/view_weight.glsl"
+#ifdef SHARED_EDGES
+#include "maps/cell_edges.glsl"
+#endif
 #else
 #include "maps/view_cells.glsl"
 #endif
@@ -29,7 +32,11 @@ void main() {
     read_ways(texel);
 #ifdef REFINED
     uint row = row_of(push.view, 0u), octave = octave_at(texel);
-    if (octave >= cells_rows.data[row + LEAST]) {
+    bool is_listed = octave >= cells_rows.data[row + LEAST];
+#ifdef SHARED_EDGES
+    cells_edges.data[edges_of(texel)].listed = is_listed ? 1u : 0u;
+#endif
+    if (is_listed) {
         list_cell(row, texel, octave);
         return;
     }

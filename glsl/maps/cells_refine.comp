@@ -31,6 +31,9 @@ layout(set = 0, binding = 18, scalar) readonly buffer List { uvec2 data[]; } cel
 layout(set = 0, binding = 14) uniform PHOTON_SAMPLER photons_way;
 layout(set = 0, binding = 15) uniform PHOTON_SAMPLER corners_hit;
 layout(set = 0, binding = 16) uniform PHOTON_SAMPLER corners_way;
+#ifdef SHARED_EDGES
+#include "maps/cell_edges.glsl"
+#endif
 #endif
 
 const int FINER = 4; // smaller cells a side
@@ -67,8 +70,9 @@ void end_photon(Photon p) {
 
 // Traces a corner of cells, or a centre, counted from the image's first, where a texel has so many a side.
 void trace_sample(int number, ivec2 at, bool centre, int finer) {
-    LightSample light = light_sample(min(at, finer * push.size - 1), finer);
-    if (!centre) light = light_sample_at(place_in_view(vec2(at), finer), light.footprint);
+    LightSample light;
+    if (centre) light = light_sample(at, finer);
+    else light = light_corner(at, finer);
 #ifdef LAYERS
     traced = number;
     layers_filled = 0;
@@ -196,6 +200,22 @@ void recall(int number, ivec2 texel, bool centre) {
         arrivals[number][k] = Arrival(hit.xyz, uint(way.r), vec3(0.0), 0.0, uint(max(hit.w, 1.0)) - 1u);
     }
 }
+
+#ifdef SHARED_EDGES
+// Takes a sample on an edge that was traced for the cell, or for a listed neighbour; false where it was for none.
+bool recall_edge(int number, ivec2 cell, ivec2 step) {
+    ivec2 owner = cell + step / FINER;
+    if (any(greaterThanEqual(owner, push.size)) || cells_edges.data[edges_of(owner)].listed == 0u) {
+        atomicAdd(cells_rows.data[row_of(push.view, 0u) + ALONE], 1u);
+        return false;
+    }
+    for (int k = 0; k < PHOTONS; k++) {
+        EdgePhoton known = cells_edges.data[edges_of(owner)].photons[edge_number(step) * PHOTONS + k];
+        arrivals[number][k] = Arrival(known.p, known.way, vec3(0.0), 0.0, known.receiver);
+    }
+    return true;
+}
+#endif
 #endif
 
 // Traces what the invocation has of a cell, `whole` where it is left as it is. One call: tracers are large.
@@ -210,6 +230,9 @@ void trace_own(ivec2 at, int lane, bool whole) {
         recall(lane, middle ? at : at + step / FINER, middle);
         return;
     }
+#ifdef SHARED_EDGES
+    if (!is_centre && any(equal(step % FINER, ivec2(0))) && recall_edge(lane, at, step)) return;
+#endif
 #else
     if (whole) step = is_centre ? ivec2(0) : step_to(lane);
 #endif

@@ -48,11 +48,16 @@ void main() {
                 else if (octave >= from) coarse += cells_rows.data[row + WEIGHTS + octave];
                 cells_rows.data[row + WEIGHTS + octave] = 0u;
             }
-            cells_rows.data[row] = 0u;
-            cells_rows.data[row + LISTED] = 0u;
             traced += finer;
             left += coarse;
-            rays += first ? uint(RAYS_FINER) * finer : uint(RAYS_DEEPER) * finer + RAYS_LEFT * coarse;
+#ifdef SHARED_EDGES
+            uint each = RAYS_SHARED;
+#else
+            uint each = uint(RAYS_FINER);
+#endif
+            rays += cells_rows.data[row + ALONE];
+            rays += first ? each * finer : uint(RAYS_DEEPER) * finer + RAYS_LEFT * coarse;
+            cells_rows.data[row + ALONE] = 0u;
         }
 #endif
         cells_tally.data[6] = traced;

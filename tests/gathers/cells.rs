@@ -101,7 +101,7 @@ fn one_cell_one_photon_and_none() {
     let one = cells(&gpu, "glass-sphere", &[("light.side", "1")]);
     judge("one cell", &one, f64::INFINITY);
     let counted = one.energy.counted.unwrap();
-    assert_eq!((counted.samples, counted.refined), (1 + 4 + 36, 1));
+    assert_eq!((counted.samples, counted.refined), (1 + 4 + 36, 1), "no neighbour shares an edge");
     // A tracer that cannot look between texels leaves the one photon a point.
     let point = cells(&gpu, "glass-sphere", &[("light.side", "1"), ("light.tracer", "fixed-point")]);
     judge("one photon", &point, EXACT);

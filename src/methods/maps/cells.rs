@@ -140,7 +140,7 @@ impl Cells {
             let pass = job.photons.define(finer.weigh(job.work.plan.pass(&name_of("maps/cells.weigh"))));
             let pass = pass.with(self.photons(job.photons, COLUMNS, emission.side)).read("maps_views", self.views);
             pass.push(&push).dispatch("maps/cells_weigh.comp", groups, GROUP * GROUP);
-            finer.pay(job.work.plan.pass(&name_of("maps/cells.pay")), view);
+            finer.pay(job.photons.define(job.work.plan.pass(&name_of("maps/cells.pay"))), view);
         }
         let pass = job.photons.define(self.give(fixed, job.work.plan.pass(&name_of("maps/cells"))));
         let pass = pass.with(self.photons(job.photons, COLUMNS, emission.side)).read("maps_views", self.views);

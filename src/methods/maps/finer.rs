@@ -5,6 +5,9 @@
 //! (`glsl/maps/cells_pay.comp`), and of the smaller ones those that are cut or torn and pay in their turn. What brings no light to
 //! the map is left as it is. Lists are of fixed size: a level with more cells than `maps.adapt_most` leaves those that are wrong by
 //! least, octave by octave, and they are counted.
+//!
+//! Cells of the view that lie side by side in the first list share the rays on their common edge, which are traced before them
+//! (`glsl/maps/cells_edges.comp`): 30 rays each, and 3 more for an edge whose other side is not listed.
 
 use super::Job;
 use crate::{
@@ -42,7 +45,7 @@ pub static ENOUGH: Real = Real {
 /// Smaller cells of one (`FINER` squared there).
 const SMALLER: u64 = 16;
 /// Words of a level's row (`ROW` of `glsl/maps/finer.glsl`), and which of them has the view's rays (`RAYS` there).
-const ROW: u32 = 40;
+const ROW: u32 = 44;
 const RAYS: usize = 4;
 /// Of a light's irradiance, what is told from none just so: as the judged error measure has it.
 const DIM: f64 = 0.1;
@@ -50,6 +53,13 @@ const DIM: f64 = 0.1;
 const BANDS: f64 = 3.0;
 /// Bytes of a cell in a list.
 const CELL_BYTES: u64 = 8;
+/// Bytes of a photon of a sample on a cell's edges, how many samples a cell has there (`EDGE_SAMPLES` of
+/// `glsl/maps/cell_edges.glsl`), and what a cell has besides.
+const EDGE_BYTES: u64 = 20;
+const EDGE_SAMPLES: u64 = 6;
+const LISTED_BYTES: u64 = 4;
+/// A buffer that every device has. With more cells neighbours trace their common edges each for itself.
+const EDGES_MOST: u64 = 128 << 20;
 /// Invocations of a work group.
 const GROUP: u32 = 64;
 
@@ -59,6 +69,8 @@ pub struct Finer {
     lists: Vec<BufferId>,
     /// Of each view and level what its list holds.
     rows: BufferId,
+    /// Of each cell of a view whether it is in the first list, and samples that it shares with neighbours.
+    edges: Option<BufferId>,
     /// What errors are held against.
     lights: BufferId,
     most: u32,
@@ -123,6 +135,9 @@ impl Finer {
         }
         let most = job.work.settings.whole(&MOST);
         let mut cells = u64::from(job.photons.side).pow(2);
+        let each = LISTED_BYTES + EDGE_SAMPLES * EDGE_BYTES * u64::from(job.photons.layers());
+        let shared = (cells * each <= EDGES_MOST).then_some(cells * each);
+        let edges = shared.map(|bytes| job.work.plan.buffer("maps/cells.edges", bytes, Lifetime::Frame));
         let mut lists = Vec::new();
         for level in 0..levels {
             let name = format!("maps/cells.list{}", numbered(level));
@@ -142,7 +157,7 @@ impl Finer {
         // Views share what the map may be wrong by.
         let texels = f64::from(side).powi(2) / job.emissions.len().max(1) as f64;
         let enough = (job.work.settings.real(&ENOUGH).unwrap_or_default() * texels) as f32;
-        Some(Self { lists, rows, lights, most, enough })
+        Some(Self { lists, rows, edges, lights, most, enough })
     }
 
     /// Gives a pass the list of a level to fill.
@@ -168,7 +183,12 @@ impl Finer {
 
     /// Gives the pass over the view's own grid the first list.
     pub fn begin<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        self.fill(pass.define("REFINED", 1).read("cells_lights", self.lights), 0)
+        self.share(self.fill(pass.define("REFINED", 1).read("cells_lights", self.lights), 0))
+    }
+
+    /// Gives a pass what neighbours share.
+    fn share<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        self.edges.into_iter().fold(pass, |pass, edges| pass.define("SHARED_EDGES", 1).write("cells_edges", edges))
     }
 
     /// Adds a pass a level. The first has the photons of the view's own grid, `known`; `give` gives each what all passes over cells
@@ -190,24 +210,33 @@ impl Finer {
             emission: &job.emissions[view],
             index: view,
         };
+        let row_of = |level: usize| {
+            let row = (view * self.lists.len() + level) as u32 * (ROW / Row::WORDS as u32);
+            Row { rows: self.rows, row }
+        };
+        if self.edges.is_some() {
+            let pass = tracing.give(self.share(self.rows(job.work.plan.pass(&name_of("maps/cells.edges")))));
+            let pass = pass.read("cells_list", self.lists[0]).push(&tracing.push());
+            pass.dispatch_counted("maps/cells_edges.comp", row_of(0), GROUP);
+        }
         let push = RefinePush { sample: tracing.push(), side, diameter, blur };
         for (level, &list) in self.lists.iter().enumerate() {
             let name = name_of(&format!("maps/cells.refine{}", numbered(level as u32)));
             let pass = tracing.give(give(job.work.plan.pass(&name))).read("cells_list", list).push(&push);
-            let pass = if level == 0 { pass.with(known.iter().copied()) } else { pass };
+            let pass = if level == 0 { self.share(pass.with(known.iter().copied())) } else { pass };
             let pass = pass.define("CELLS_LEVEL", level).define("CELLS_MOST", self.most);
             let pass = match self.lists.get(level + 1) {
                 Some(_) => self.fill(pass.define("DEEPER", 1).read("cells_lights", self.lights), level + 1),
                 None => self.rows(pass),
             };
-            let row = (view * self.lists.len() + level) as u32 * (ROW / Row::WORDS as u32);
-            pass.dispatch_counted("maps/cells_refine.comp", Row { rows: self.rows, row }, GROUP);
+            pass.dispatch_counted("maps/cells_refine.comp", row_of(level), GROUP);
         }
     }
 
     /// Gives the pass that counts the lists.
     pub fn count<'p>(&self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        self.rows(pass).define("CELLS_MOST", self.most)
+        let shared = self.edges.iter().fold(self.rows(pass), |pass, _| pass.define("SHARED_EDGES", 1));
+        shared.define("CELLS_MOST", self.most)
     }
 }
 
