@@ -189,6 +189,7 @@ impl Finer {
             photons: job.photons,
             emission: &job.emissions[view],
             index: view,
+            blocks: None,
         };
         let push = RefinePush { sample: tracing.push(), side, diameter, blur };
         for (level, &list) in self.lists.iter().enumerate() {
