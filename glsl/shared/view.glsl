@@ -105,8 +105,8 @@ float view_solid_angle(View v, vec2 from, vec2 to) {
     for (int k = 0; k < 4; k++) {
         vec2 node = vec2((k & 1) == 0 ? -NODE : NODE, (k & 2) == 0 ? -NODE : NODE);
         vec2 w = view_window(v, 0.5 * (from + to) + node * (to - from));
-        float s = 1.0 + dot(w, w);
-        sum += 1.0 / (s * sqrt(s));
+        float along = 1.0 / sqrt(1.0 + dot(w, w));
+        sum += along * along * along;
     }
     return (v.x1 - v.x0) * (to.x - from.x) * ((v.y1 - v.y0) * (to.y - from.y)) * 0.25 * sum;
 }
