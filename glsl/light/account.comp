@@ -13,6 +13,9 @@
 #include "light/tracer.glsl"
 #endif
 #include "capture.glsl"
+#ifdef BLOCK_LEVELS
+#include "light/blocks.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -97,7 +100,13 @@ void account(ivec2 texel) {
     trace_tree(light_sample(texel));
     for (int layer = 0; layer < layers_filled; layer++) book(layer_status[layer], layer_mean[layer]);
 #else
+#ifdef BLOCK_LEVELS
+    int stride = stride_of(texel, push.view);
+    if (any(notEqual(texel & (stride - 1), ivec2(0)))) return;
+    Photon p = trace_photon(light_sample_of(texel, min(texel + stride, push.size)));
+#else
     Photon p = trace_photon(light_sample(texel));
+#endif
     if (p.status == PHOTON_NONE) return;
     book_way(p);
     book(status_for_method(p), mean(p.flux));

@@ -3,7 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 
 // N x N photons of one light and view into the columns that the method reads. With LAYERS, each sample leaves up to so
-// many, one a layer.
+// many, one a layer. With BLOCK_LEVELS photons are as dense as each block of the image asks for: with COARSE one for each block,
+// else those that are listed.
 
 #include "light/sample.glsl"
 #ifdef LAYERS
@@ -17,7 +18,15 @@
 #define COLUMN_PLACE ivec2
 #endif
 
+#ifdef BLOCK_LEVELS
+#include "light/blocks.glsl"
+#endif
+
+#ifdef LISTED
+layout(local_size_x = 64) in;
+#else
 layout(local_size_x = 8, local_size_y = 8) in;
+#endif
 
 #ifdef COLUMN_HIT
 layout(set = 0, binding = 8, COLUMN_HIT) uniform writeonly COLUMN_IMAGE photons_hit;
@@ -62,6 +71,48 @@ void end_photon(Photon p) {
 }
 #endif
 
+#ifdef COARSE
+// What of a slot is asked for before it is known to hold a photon.
+void clear_slot(ivec2 slot) {
+    imageStore(photons_hit, slot, vec4(0.0));
+    imageStore(photons_way, slot, vec4(0.0));
+}
+
+void main() {
+    ivec2 block = ivec2(gl_GlobalInvocationID.xy), low = block * BLOCK_SIDE;
+    if (any(greaterThanEqual(block, ivec2(BLOCKS)))) return;
+    for (int at = 1; at < BLOCK_SIDE * BLOCK_SIDE; at++) clear_slot(low + ivec2(at % BLOCK_SIDE, at / BLOCK_SIDE));
+    if (all(lessThan(low, push.size))) {
+        store_photon(low, trace_photon(light_sample_of(low, min(low + BLOCK_SIDE, push.size))));
+    } else {
+        store_photon(low, no_photon());
+    }
+}
+#elif defined(LISTED)
+layout(set = 0, binding = 32, scalar) readonly buffer Before { uint data[]; } blocks_before;
+
+// The block that a photon is of: the last before which no more come.
+uint block_of(uint number) {
+    uint low = 0u, high = uint(BLOCKS * BLOCKS);
+    while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        if (blocks_before.data[middle] <= number) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
+void main() {
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, number = 64u * group + gl_LocalInvocationIndex;
+    if (number >= blocks_before.data[BLOCKS * BLOCKS]) return;
+    uint at = block_of(number);
+    ivec2 block = block_at(at);
+    int stride = stride_at(at, push.view), own = int(number - blocks_before.data[at]);
+    int along = photons_of(block, stride, push.size).x;
+    ivec2 low = block * BLOCK_SIDE + stride * ivec2(own % along, own / along);
+    store_photon(low, trace_photon(light_sample_of(low, min(low + stride, push.size))));
+}
+#else
 void main() {
     // What is stored beyond the image is dropped; a tile that reaches beyond its view holds nothing there.
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
@@ -77,3 +128,4 @@ void main() {
     }
 #endif
 }
+#endif

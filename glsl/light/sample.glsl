@@ -53,4 +53,16 @@ LightSample light_corner(ivec2 at, int finer) {
     return light_sample_at(place_in_view(vec2(at), finer), footprint);
 }
 
+#ifdef BLOCK_LEVELS
+// Of all slots from `low` on to before `high`, through their middle.
+LightSample light_sample_of(ivec2 low, ivec2 high) {
+    View v = light_views.data[push.view];
+    vec2 whole = vec2(push.whole), from = vec2(push.first + low) / whole, to = vec2(push.first + high) / whole;
+    ivec2 slots = high - low;
+    float footprint = v.perspective != 0u ? view_solid_angle(v, from, to)
+                                          : float(slots.x * slots.y) * view_texel_cross_section(v, ivec2(push.whole));
+    return light_sample_at((vec2(2 * push.first + low + high)) / (2.0 * whole), footprint);
+}
+#endif
+
 #endif

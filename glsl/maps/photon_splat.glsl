@@ -10,6 +10,7 @@ layout(push_constant, scalar) uniform Push {
     float diameter;  // texels: of fixed splats, and of varying ones without a neighbour
     float threshold; // texels: the diameter beyond which a splat goes to a smaller level
     uint light;
+    uint view;       // of emission
 } push;
 
 struct Splat {

@@ -98,6 +98,19 @@ float view_texel_solid_angle(View v, ivec2 size, ivec2 texel) {
     return view_texel_window(v, size) * 0.25 * sum;
 }
 
+// Solid angle (sr) of a part of the window of a perspective view, by the same rule.
+float view_solid_angle(View v, vec2 from, vec2 to) {
+    const float NODE = 0.28867513;
+    float sum = 0.0;
+    for (int k = 0; k < 4; k++) {
+        vec2 node = vec2((k & 1) == 0 ? -NODE : NODE, (k & 2) == 0 ? -NODE : NODE);
+        vec2 w = view_window(v, 0.5 * (from + to) + node * (to - from));
+        float along = 1.0 / sqrt(1.0 + dot(w, w));
+        sum += along * along * along;
+    }
+    return (v.x1 - v.x0) * (to.x - from.x) * ((v.y1 - v.y0) * (to.y - from.y)) * 0.25 * sum;
+}
+
 // Vulkan clip space: y downwards, depth 0 on the near plane, 1 on the far plane.
 vec4 view_clip(View v, vec3 p) {
     vec3 q = p - v.origin;

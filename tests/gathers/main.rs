@@ -1,6 +1,7 @@
 //! Gather `copy`: the picture of `fetch` blended where nothing is rounded, and what float16 costs where it is.
 
 mod adapt;
+mod blocks;
 mod cells;
 #[path = "../common/mod.rs"]
 mod common;

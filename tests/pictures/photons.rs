@@ -51,7 +51,8 @@ fn traced(scene: &Scene, columns: &[Column]) -> Traced {
     let bench = Bench { scene, arrays: &arrays, buffers: &buffers, settings, class, emissions, views, base: "light" };
     let tracer = Tracer::plan(&mut plan, &bench).unwrap();
     let (emission, tracer) = (&emissions[0], &tracer);
-    let tracing = Tracing { scene: &buffers, views, tracer, class, photons: &photons, emission, index: 0 };
+    let tracing =
+        Tracing { scene: &buffers, views, tracer, class, photons: &photons, emission, index: 0, blocks: None };
     light::photons(&mut plan, "light/photons", &tracing);
     let account = account::account(&mut plan, "light/account", &tracing, &("takes_all.glsl", vec![]));
     Traced { plan, bytes_each: photons.bytes_each(), account }

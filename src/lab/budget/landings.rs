@@ -48,7 +48,7 @@ impl Method for Landings {
     }
 
     fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
-        let wanted = Wanted { columns: vec![Column::Hit, Column::Flux], halves: false };
+        let wanted = Wanted { columns: vec![Column::Hit, Column::Flux], halves: false, blocks: 0 };
         Ok(Planned::of(light::shoot(work, &wanted, Binning::begin)?, |_| Provided::default()))
     }
 }

@@ -60,7 +60,7 @@ impl Method for Keep {
     }
 
     fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
-        let wanted = Wanted { columns: KEPT.map(|(column, ..)| column).to_vec(), halves: false };
+        let wanted = Wanted { columns: KEPT.map(|(column, ..)| column).to_vec(), halves: false, blocks: 0 };
         Ok(Planned::of(light::shoot(work, &wanted, Keeping::begin)?, |_| Provided::default()))
     }
 }

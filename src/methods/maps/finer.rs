@@ -209,6 +209,7 @@ impl Finer {
             photons: job.photons,
             emission: &job.emissions[view],
             index: view,
+            blocks: None,
         };
         let row_of = |level: usize| {
             let row = (view * self.lists.len() + level) as u32 * (ROW / Row::WORDS as u32);

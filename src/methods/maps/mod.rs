@@ -3,6 +3,7 @@
 //! sum to one, sums in fixed point; its own columns are presets (`maps.gather`).
 
 mod axes;
+mod blocks;
 mod cells;
 mod copied;
 mod finer;
@@ -17,13 +18,14 @@ mod views;
 mod windows;
 
 use axes::{Axes, GATHER, MERGE, SPLAT, TARGET, TRAVERSE};
+use blocks::BLOCKS;
 use cells::Cells;
 use copied::{COPY, Vertices};
 use finer::{ADAPT, ENOUGH, MOST};
 use hierarchy::Hierarchy;
 use large::{Large, RASTER_FROM};
 use points::Points;
-use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats};
+use splats::{FOOTPRINT, LEVEL, LEVEL_THRESHOLD, Splats, Told};
 use sums::Fixed;
 
 use super::{Link, Method, Outcome, Planned, Provided, Shown, Slot};
@@ -32,7 +34,7 @@ use crate::{
     passes::{
         PlanError, Work,
         eye::SurfaceProvider,
-        light::{self, Column, Job, Photons, Taker, Wanted},
+        light::{self, Column, Job, Measure, Photons, Taker, Wanted},
     },
     scene::Scene,
     settings::{Choice, Real, Setting, Settings, Whole},
@@ -117,6 +119,7 @@ static SETTINGS: &[Setting] = &[
     Setting::Whole(&ADAPT),
     Setting::Whole(&MOST),
     Setting::Real(&ENOUGH),
+    Setting::Whole(&BLOCKS),
 ];
 
 static CHAIN: &[Link] = &[
@@ -158,6 +161,7 @@ static CHAIN: &[Link] = &[
             "maps.adapt",
             "maps.adapt_most",
             "maps.adapt_error",
+            "maps.blocks",
             "light.tile",
             "eye.samples",
         ],
@@ -226,7 +230,11 @@ impl Method for Maps {
 
     fn plan(&self, work: &mut Work<'_>) -> Result<Planned, PlanError> {
         let settings = work.settings;
-        let wanted = Wanted { columns: columns(settings, work.scene), halves: copied::halves(settings) };
+        let wanted = Wanted {
+            columns: columns(settings, work.scene),
+            halves: copied::halves(settings),
+            blocks: blocks::levels(settings),
+        };
         Ok(Planned::of(light::shoot(work, &wanted, PlannedMaps::begin)?, PlannedMaps::provide))
     }
 }
@@ -234,7 +242,8 @@ impl Method for Maps {
 /// The photon columns that are read, as set.
 fn columns(settings: &Settings, scene: &Scene) -> Vec<Column> {
     let axes = Axes::of(settings, scene);
-    if axes.splat == "cells" { cells::COLUMNS.to_vec() } else { Splats::of(axes, settings).columns().to_vec() }
+    let own = if axes.splat == "cells" { cells::COLUMNS } else { Splats::of(axes, settings).columns() };
+    [own, blocks::columns(settings)].concat()
 }
 
 /// Whether a geometry shader discards what is no photon, as a traversal does by itself.
@@ -258,6 +267,8 @@ struct PlannedMaps {
     points: Vec<Points>,
     /// The same, where large splats are drawn.
     large: Vec<Large>,
+    /// Of blocks' photons.
+    apart: [f32; 2],
     culls: bool,
     drawn: bool,
 }
@@ -266,6 +277,7 @@ impl PlannedMaps {
     /// Images and buffers that all views share.
     fn begin(job: &mut Job<'_>) -> Result<Self, PlanError> {
         let axes = Axes::checked(job.work.settings, job.work.scene)?;
+        blocks::check(job.work.settings, axes)?;
         let side = job.work.settings.whole(&SIDE);
         let views = views::receiving(job, axes, side, job.work.settings.whole(&SPLAT_SIZE));
         let splats = Splats::of(axes, job.work.settings);
@@ -286,6 +298,7 @@ impl PlannedMaps {
             large: Large::plan(job, axes, &fixed),
             fixed,
             hierarchies: Hierarchy::plan(job, axes),
+            apart: blocks::apart(job, splats),
             culls: culls(job.work.settings, axes),
             drawn: false,
         })
@@ -340,6 +353,15 @@ impl Taker for PlannedMaps {
         ("maps/capture.glsl", vec![self.views()])
     }
 
+    fn measure(&self) -> Measure {
+        Measure {
+            file: "maps/measure.glsl",
+            reads: vec![self.views()],
+            side: self.splats.side as f32,
+            apart: self.apart,
+        }
+    }
+
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String) {
         if let (Some(cells), Some(fixed)) = (&self.cells, &self.fixed) {
             cells.gather(job, fixed, view, name_of);
@@ -360,13 +382,14 @@ impl Taker for PlannedMaps {
         if let Some(points) = points {
             points.count(job, view, self.views, name_of);
         }
+        let told = Told::of(job, view);
         let first = !std::mem::replace(&mut self.drawn, true);
         for (at, &map) in self.maps.iter().enumerate() {
             let number = if self.maps.len() > 1 { format!(".{at}") } else { String::new() };
             let name = name_of(&format!("maps/gather{number}"));
             let photons = job.photons;
             let pass = photons.define(job.work.plan.pass(&name)).with([self.views()]);
-            let pass = self.splats.tell(job.work.settings, light, at, pass);
+            let pass = self.splats.tell(told, at, pass);
             let clear = first.then_some([0.0; 4]);
             let Some(fixed) = &self.fixed else {
                 self.draw(photons, pass.target_layers(map, clear, Blend::Add));
@@ -382,8 +405,7 @@ impl Taker for PlannedMaps {
             if let Some(large) = large {
                 large.count(job, points, view as u32, &name_of("maps/large"));
                 let pass = photons.define(job.work.plan.pass(&name_of("maps/gather.large"))).with([self.views()]);
-                let pass =
-                    self.splats.tell(job.work.settings, light, at, pass).with(photons.fetch(self.splats.columns()));
+                let pass = self.splats.tell(told, at, pass).with(photons.fetch(self.splats.columns()));
                 large.draw(pass.target_layers(map, clear, Blend::Add), points, view as u32);
             }
             if view + 1 == job.emissions.len() {

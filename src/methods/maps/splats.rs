@@ -1,9 +1,9 @@
 //! How large splats are, and into which level of the map they go (Wyman 2008, section 3.3).
 
-use super::{Axes, SIDE, SPLAT, SPLAT_SIZE};
+use super::{Axes, Job, SIDE, SPLAT, SPLAT_SIZE};
 use crate::{
     gpu::PassBuilder,
-    passes::light::Column,
+    passes::light::{Blocks, Column, Emission},
     settings::{Choice, Real, Settings},
 };
 
@@ -42,6 +42,22 @@ struct SplatPush {
     diameter: f32,
     threshold: f32,
     light: u32,
+    view: u32,
+}
+
+/// What passes that splat are told of, besides.
+#[derive(Clone, Copy)]
+pub struct Told<'a> {
+    settings: &'a Settings,
+    view: usize,
+    emission: &'a Emission,
+    blocks: Option<&'a Blocks>,
+}
+
+impl<'a> Told<'a> {
+    pub fn of(job: &Job<'a>, view: usize) -> Self {
+        Self { settings: job.work.settings, view, emission: &job.emissions[view], blocks: job.blocks }
+    }
 }
 
 /// The splats of a map.
@@ -95,14 +111,26 @@ impl Splats {
         }
     }
 
-    /// Tells a pass that splats photons of a light into the map of that number.
-    pub fn tell<'p>(self, settings: &Settings, light: u32, map: usize, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+    /// Texels of a fixed splat, or of the narrowest.
+    pub fn diameter(self) -> u32 {
+        self.diameter
+    }
+
+    /// Whether splats are as wide as their neighbours are far.
+    pub fn is_elliptic(self) -> bool {
+        self.kind == "elliptic"
+    }
+
+    /// Tells a pass that splats photons of a view of emission into the map of that number.
+    pub fn tell<'p>(self, told: Told<'_>, map: usize, pass: PassBuilder<'p>) -> PassBuilder<'p> {
+        let Told { settings, view, emission, blocks } = told;
         let varying = ["varying", "thin-lens"].contains(&self.kind);
         let push = SplatPush {
             side: self.side as i32,
             diameter: (self.diameter << map) as f32,
             threshold: settings.real(&LEVEL_THRESHOLD).unwrap_or(f64::INFINITY) as f32,
-            light,
+            light: emission.lamp,
+            view: view as u32,
         };
         let wanted = [
             ("VARYING", varying),
@@ -115,6 +143,10 @@ impl Splats {
             ("COUNTED", self.kind == "interpolated"),
         ];
         let pass = wanted.into_iter().filter(|(_, on)| *on).fold(pass, |pass, (name, _)| pass.define(name, 1));
+        let pass = match blocks.filter(|_| self.is_elliptic()) {
+            Some(blocks) => blocks.define(pass, emission.side),
+            None => pass,
+        };
         pass.push(&push)
     }
 }

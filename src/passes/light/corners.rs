@@ -53,6 +53,7 @@ impl Corners {
             photons: self.photons(bench.emissions[index].side),
             emission: &self.emissions[index],
             index,
+            blocks: None,
         };
         photons(plan, &view_name(BASE, bench.scene, bench.emissions, index), &tracing);
     }

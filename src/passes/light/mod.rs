@@ -6,6 +6,7 @@
 //! In class `all:N` each sample grows a tree, and the buffer has `light.layers` layers, which cost their bytes whether a
 //! sample fills them or not.
 
+mod blocks;
 mod corners;
 mod emission;
 mod images;
@@ -19,11 +20,12 @@ use crate::{
     settings::{Choice, Setting, Settings, Whole, Word},
 };
 
+pub use blocks::Blocks;
 pub use corners::Corners;
 pub use emission::{Emission, emissions, sides, sized, view_name};
 pub use images::Bench;
 pub use photons::{Column, Photons, SamplePush, Tracing, photon_buffer, photons};
-pub use shoot::{Job, Shot, Shots, Taker, Wanted, shoot};
+pub use shoot::{Job, Measure, Shot, Shots, Taker, Wanted, shoot};
 pub use tracer::{BACK, TOTAL_REFLECTION, TRACER, Tracer};
 pub use unit::flux_unit;
 

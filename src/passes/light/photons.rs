@@ -1,6 +1,6 @@
 //! The photon buffer, and the dispatch that fills it from one view.
 
-use super::{Bench, Emission, LAYERS, Tracer, emission::sized};
+use super::{Bench, Blocks, Emission, LAYERS, Tracer, emission::sized};
 use crate::{
     gpu::{BufferId, Format, ImageId, Lifetime, PassBuilder, Plan, Resource},
     passes::scene::SceneBuffers,
@@ -195,6 +195,8 @@ pub struct Tracing<'a> {
     pub emission: &'a Emission,
     /// Its place among the views.
     pub index: usize,
+    /// Where photons are not one a slot of the photon buffer.
+    pub blocks: Option<&'a Blocks>,
 }
 
 impl Tracing<'_> {
@@ -218,6 +220,7 @@ impl Tracing<'_> {
         };
         let lights = self.scene.lights(self.scene.tracing(pass));
         let pass = self.photons.define(self.tracer.give(lights, self.emission, self.index));
+        let pass = self.blocks.into_iter().fold(pass, |pass, blocks| blocks.define(pass, self.photons.side));
         let pass = self.emission.band.into_iter().fold(pass, |pass, band| pass.define("BAND", band));
         pass.read("light_views", self.views).define("EVENTS", events).define("REFLECT", reflect)
     }
@@ -231,11 +234,15 @@ impl Tracing<'_> {
 
 /// Photons of one view into their columns: `light/photons`.
 pub fn photons(plan: &mut Plan, name: &str, tracing: &Tracing<'_>) {
-    let mut pass = plan.pass(name);
-    for &(column, image) in &tracing.photons.columns {
+    tracing.dispatch(columns(plan.pass(name), tracing.photons), "light/photons.comp");
+}
+
+/// Gives a pass the columns to fill.
+pub(super) fn columns<'p>(mut pass: PassBuilder<'p>, photons: &Photons) -> PassBuilder<'p> {
+    for &(column, image) in &photons.columns {
         let binding = format!("photons_{}", column.name());
         let define = format!("COLUMN_{}", column.name().to_uppercase());
-        pass = pass.store(&binding, image).define(&define, column.format(tracing.photons.half.is_some()).glsl());
+        pass = pass.store(&binding, image).define(&define, column.format(photons.half.is_some()).glsl());
     }
-    tracing.dispatch(pass, "light/photons.comp");
+    pass
 }

@@ -2,7 +2,8 @@
 //! does. One that takes none has none of this.
 
 use super::{
-    Bench, Column, Emission, Photons, Tracer, Tracing, emissions, paths, photon_buffer, photons, sides, view_name,
+    Bench, Blocks, Column, Emission, Photons, Tracer, Tracing, emissions, paths, photon_buffer, photons, sides,
+    view_name,
 };
 use crate::{
     gpu::{BufferId, Phase, Resource},
@@ -22,6 +23,8 @@ pub struct Job<'a> {
     pub bench: &'a Bench<'a>,
     /// The tracer that fills the photon buffer.
     pub tracer: &'a Tracer,
+    /// Where photons are not one a slot of the photon buffer.
+    pub blocks: Option<&'a Blocks>,
 }
 
 /// A method that takes photons, being planned.
@@ -29,8 +32,26 @@ pub trait Taker {
     /// Which photons it takes: a file that defines `captured`, and what it reads.
     fn capture(&self) -> (&'static str, Vec<(&'static str, Resource)>);
 
+    /// How it measures where photons land; asked of one that wants them in blocks.
+    fn measure(&self) -> Measure {
+        Measure::default()
+    }
+
     /// Takes the photons of one view, which lie in the photon buffer after the pass before.
     fn gather(&mut self, job: &mut Job<'_>, view: usize, name_of: &dyn Fn(&str) -> String);
+}
+
+/// What `glsl/light/blocks.comp` asks of a method.
+#[derive(Default)]
+pub struct Measure {
+    /// A file that defines `measured`.
+    pub file: &'static str,
+    /// What it reads.
+    pub reads: Vec<(&'static str, Resource)>,
+    /// Texels a side of what it measures in.
+    pub side: f32,
+    /// Texels that photons may lie apart, and those where light breaks.
+    pub apart: [f32; 2],
 }
 
 /// The photons that a method asks for.
@@ -39,6 +60,8 @@ pub struct Wanted {
     pub columns: Vec<Column>,
     /// Whether it wants them all in float16.
     pub halves: bool,
+    /// log2 of the side of blocks, each with photons as dense as it needs; 0: one photon a slot.
+    pub blocks: u32,
 }
 
 /// Photons that are shot in every frame.
@@ -78,17 +101,25 @@ pub fn shoot<T: Taker>(
     let views = plan.upload("light/views", &views);
     let bench = Bench { scene, arrays, buffers, settings, class, emissions: &emissions, views, base: "light" };
     let tracer = Tracer::plan(plan, &bench)?;
-    let mut job =
-        Job { work: Work { plan, ..*work }, emissions: &emissions, photons: &all[0], bench: &bench, tracer: &tracer };
+    let blocks = match wanted.blocks {
+        0 => None,
+        levels => Some(Blocks::plan(plan, settings, &emissions, all[0].layers(), levels)?),
+    };
+    let blocks = blocks.as_ref();
+    let work = Work { plan, ..*work };
+    let mut job = Job { work, emissions: &emissions, photons: &all[0], bench: &bench, tracer: &tracer, blocks };
     let mut taker = begin(&mut job)?;
     let mut accounts = Vec::new();
     for (index, emission) in emissions.iter().enumerate() {
         let name_of = |base: &str| view_name(base, scene, &emissions, index);
         let own = all.iter().find(|photons| photons.side == emission.side).unwrap_or(&all[0]);
         job.photons = own;
-        let tracing = Tracing { scene: buffers, views, tracer: &tracer, class, photons: own, emission, index };
+        let tracing = Tracing { scene: buffers, views, tracer: &tracer, class, photons: own, emission, index, blocks };
         tracer.images(job.work.plan, &bench, Phase::Frame, index);
-        photons(job.work.plan, &name_of("light/photons"), &tracing);
+        match blocks {
+            Some(blocks) => blocks.photons(job.work.plan, &tracing, &taker, &name_of),
+            None => photons(job.work.plan, &name_of("light/photons"), &tracing),
+        }
         taker.gather(&mut job, index, &name_of);
         tracer.images(job.work.plan, &bench, Phase::Account, index);
         accounts.push(account(job.work.plan, &name_of("light/account"), &tracing, &taker.capture()));
