@@ -1,6 +1,6 @@
 //! The axes of gathering photons, and the paper's columns as presets of them.
 
-use super::{SIDE, SPLAT_SIZE, large::RASTER_FROM, sums, views};
+use super::{SIDE, SPLAT_SIZE, large::RASTER_FROM, refused, sums, views};
 use crate::{
     passes::{PlanError, light},
     scene::{PathClass, Scene},
@@ -188,7 +188,7 @@ impl<'s> Axes<'s> {
                 "cells cover the texels that they cover, however many",
                 "set maps.target=single",
             ),
-            _ => Ok(axes),
+            _ => refused::check(settings, axes).map(|()| axes),
         }
     }
 

@@ -10,6 +10,7 @@ mod hierarchy;
 mod large;
 mod points;
 mod pyramid;
+mod refused;
 mod sparse;
 mod splats;
 mod sums;
