@@ -19,12 +19,15 @@ void main() {
 #ifdef MULTIRES
     if (any(greaterThan(gl_FragCoord.xy, splat_centre.zz))) discard; // beyond its level's corner
 #endif
-    vec2 centre = splat_centre.xy, diameter = splat_flux.ww;
+    vec2 centre = splat_centre.xy;
+    float diameter = splat_flux.w;
 #ifdef SHAPED
+    // The point is the square about a long splat, and covers more than it.
     centre.y += splat_shape.y * (gl_FragCoord.x - centre.x);
-    diameter.y = splat_shape.x;
+    float weight = splat_weight_within(gl_FragCoord.x, centre.x, diameter) * splat_weight_within(gl_FragCoord.y, centre.y, splat_shape.x);
+#else
+    float weight = splat_weight(gl_FragCoord.x, centre.x, diameter) * splat_weight(gl_FragCoord.y, centre.y, diameter);
 #endif
-    float weight = splat_weight(gl_FragCoord.x, centre.x, diameter.x) * splat_weight(gl_FragCoord.y, centre.y, diameter.y);
 #ifdef COUNTED
     deposited = vec4(weight * splat_flux.rgb, weight * splat_count);
 #else

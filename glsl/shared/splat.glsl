@@ -32,6 +32,13 @@ float splat_weight(float texel_centre, float p, float diameter) {
     return max(exp(-0.5 * x * x) - EDGE, 0.0);
 }
 
+// The same of a texel that no loop or point of this size has chosen: nothing outside the window, where what is one texel wide
+// would else weigh 1 at any distance.
+float splat_weight_within(float texel_centre, float p, float diameter) {
+    float beside = texel_centre - p, reach = 0.5 * splat_diameter(diameter);
+    return beside >= -reach && beside < reach ? splat_weight(texel_centre, p, diameter) : 0.0;
+}
+
 // Sum of the weights over the texels of one axis that the window covers inside a map of `side` texels; zero if
 // there are none.
 float splat_norm(float p, float diameter, int side) {

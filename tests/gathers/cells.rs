@@ -140,6 +140,30 @@ fn what_cells_cannot_do_is_refused_with_the_reason() {
     }
 }
 
+#[test]
+fn cells_that_nobody_asked_for_give_way_where_their_layers_have_no_room() {
+    let shared = [("light.view", "shared"), ("scene.lights.sun.angular_diameter", "5.0"), ("light.area_samples", "32")];
+    for (scene, camera, set, cells) in [
+        ("two-lights", "main", &[("maps.side", "1024")][..], true),
+        ("two-lights", "main", &[("maps.side", "1200")], false),
+        ("two-lights", "region", &[("maps.side", "1200")], false), // as through any other camera
+        ("glass-sphere", "main", &[("maps.side", "2048")], true),
+        ("glass-sphere", "main", &[("maps.side", "4096")], false),
+        ("glass-sphere", "region", &shared, false),
+        ("glass-sphere", "region", &shared[..2], true),
+    ] {
+        let all = [&[("maps.splat", "auto")], set].concat();
+        let plan =
+            renderer::plan(&job(scene, &all, camera, [8, 8])).unwrap_or_else(|e| panic!("{scene}, {set:?}: {e}")).plan;
+        let said = plan.left_out.iter().filter(|l| l.name == "maps/cells" && l.reason.contains("128 MiB")).count();
+        assert_eq!(plan.passes.iter().any(|pass| pass.name.starts_with("maps/cells")), cells, "{scene}, {set:?}");
+        assert_eq!(said, usize::from(!cells), "{scene}, {set:?}: said once");
+    }
+    let asked = [("maps.gather", "cells"), ("maps.side", "1200")];
+    let Err(refused) = renderer::plan(&job("two-lights", &asked, "main", [8, 8])) else { panic!("it is planned") };
+    assert!(refused.to_string().contains("maps.splat=fixed"), "{refused}");
+}
+
 /// Pixels a side of the pictures that are held against the closed form, and what they see of the floor, m.
 const PIXELS: usize = 64;
 const ACROSS: f64 = 3.0;

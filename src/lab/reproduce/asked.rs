@@ -79,7 +79,11 @@ impl Asked {
 
     /// Of them those whose time it asks; of the others one frame is enough.
     pub fn timed(&self) -> Vec<Place> {
-        if let Self::Claim(claim) = self { claim.timed() } else { self.places() }
+        match self {
+            Self::Claim(claim) => claim.timed(),
+            Self::Points(_) | Self::Fewer(_) | Self::Dropped(..) => Vec::new(),
+            Self::Time(_) | Self::Times(..) | Self::Saved(..) | Self::PaysFrom(_) | Self::Triangles(_) => self.places(),
+        }
     }
 
     /// The one variant and N that it is of, if it is of one.
@@ -106,8 +110,12 @@ impl Asked {
                     low: 1.0 - r.interval.high,
                     high: 1.0 - r.interval.low,
                 };
-                let all: Vec<_> = pairs.iter().filter_map(|(a, b)| ratio(run, *a, *b).ok()).map(saved).collect();
-                pick.of(all.into_iter()).ok_or_else(|| run.why(pairs.first().map_or(0, |(a, _)| a.side)))
+                // The least of some N is not the least of all.
+                let of = |(a, b): &(Place, Place)| {
+                    ratio(run, *a, *b).map(saved).map_err(|why| format!("N = {}: {why}", a.side))
+                };
+                let all: Vec<_> = pairs.iter().map(of).collect::<Result<_, _>>()?;
+                pick.of(all.into_iter()).ok_or_else(|| "of no N".to_owned())
             }
             Self::Claim(claim) => claim.measure(run),
             Self::PaysFrom(pairs) => pays_from(run, pairs),

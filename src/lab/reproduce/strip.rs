@@ -13,6 +13,7 @@ const LINES: f64 = 2.0;
 /// As SVG, of pictures in files beside it; nothing of none.
 pub fn strip(id: &str, pictures: &[(String, Measured)]) -> Option<String> {
     let mut sides: Vec<u32> = pictures.iter().map(|(_, m)| m.side).collect();
+    sides.sort_unstable(); // what is not timed comes last, whatever its N
     sides.dedup();
     let rows: Vec<Vec<_>> =
         sides.iter().map(|&side| pictures.iter().filter(|(_, m)| m.side == side).collect()).collect();

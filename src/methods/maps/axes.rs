@@ -1,6 +1,6 @@
 //! The axes of gathering photons, and the paper's columns as presets of them.
 
-use super::{SIDE, SPLAT_SIZE, large::RASTER_FROM};
+use super::{SIDE, SPLAT_SIZE, large::RASTER_FROM, refused, sums, views};
 use crate::{
     passes::{PlanError, light},
     scene::{PathClass, Scene},
@@ -50,7 +50,7 @@ pub static SPLAT: Choice = Choice {
     default: AUTO,
     words: &[AUTO, "fixed", "varying", "thin-lens", "interpolated", "elliptic", "cells"],
     doc: "how large splats are: auto: cells, but fixed where another axis, maps.splat_size or maps.raster_from is set for splats, in \
-          class all:N, whose cells are dear, and where maps.side is beyond 2048; fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
+          class all:N, whose cells are dear, and where 24 bytes of sums for each texel of all layers that any camera asks for are more than 128 MiB; fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
           its Fig. 7 compares: thin-lens: by where neighbouring rays come nearest; interpolated: of four sizes those that \
           a dozen photons fall into; ours: elliptic: ellipses that reach to the photons beside them; cells: no splats: the light between the corners of a photon's texel, exactly where \
           it lands",
@@ -58,8 +58,6 @@ pub static SPLAT: Choice = Choice {
 
 /// Measured: at the default numbers cells take a tenth more of a frame than fixed splats do, and err a hundred times less.
 const AUTO: &str = "auto";
-/// The largest side of a map whose sums fit into a buffer of 128 MiB.
-const SIDE_MOST: u32 = 2048;
 
 pub static TARGET: Choice = Choice {
     key: "maps.target",
@@ -111,10 +109,23 @@ impl<'s> Axes<'s> {
 
     /// What the light is spread by where nobody says.
     fn chosen(self, settings: &Settings, scene: &Scene) -> &'static str {
+        let cells = self.asks_for_cells(settings, scene) && no_room(settings, scene).is_none();
+        if cells { "cells" } else { "fixed" }
+    }
+
+    /// Why light is not spread by cells although nothing that is set speaks against them; none else.
+    pub fn why_no_cells(settings: &Settings, scene: &Scene) -> Option<String> {
+        let asked = Axes::asked(settings);
+        let meant = asked.splat == AUTO && asked.asks_for_cells(settings, scene);
+        if meant { no_room(settings, scene) } else { None }
+    }
+
+    /// Whether cells suit the axes, the scene and what is set.
+    fn asks_for_cells(self, settings: &Settings, scene: &Scene) -> bool {
         let plain = (self.traverse, self.merge, self.target) == ("compute", "none", "single");
         let splats = [&SPLAT_SIZE, &RASTER_FROM].iter().any(|key| settings.is_set(Setting::Whole(key)));
         let one_way = !matches!(light::paths(scene, settings), PathClass::All(_));
-        if plain && !splats && one_way && settings.whole(&SIDE) <= SIDE_MOST { "cells" } else { "fixed" }
+        plain && !splats && one_way
     }
 
     /// As [`Self::of`].
@@ -177,7 +188,7 @@ impl<'s> Axes<'s> {
                 "cells cover the texels that they cover, however many",
                 "set maps.target=single",
             ),
-            _ => Ok(axes),
+            _ => refused::check(settings, axes).map(|()| axes),
         }
     }
 
@@ -194,6 +205,12 @@ impl<'s> Axes<'s> {
     pub fn streams(self) -> bool {
         self.traverse == "hierarchical"
     }
+}
+
+/// Why no buffer holds cells, decided by the layers that any camera asks for: what light is spread by does not depend on
+/// who looks.
+fn no_room(settings: &Settings, scene: &Scene) -> Option<String> {
+    sums::too_large_for_cells(settings.whole(&SIDE), views::most_layers(scene, settings))
 }
 
 fn refused<T>(what: impl Into<String>, reason: impl Into<String>, remedy: &str) -> Result<T, PlanError> {

@@ -86,14 +86,14 @@ struct TallyPush {
 ///
 /// # Errors
 /// Where no buffer holds the map's sums.
-pub fn check(axes: Axes<'_>, fixed: &Option<Fixed>) -> Result<(), PlanError> {
+pub fn check(axes: Axes<'_>, fixed: &Option<Fixed>, (side, layers): (u32, u32)) -> Result<(), PlanError> {
     if axes.splat != "cells" || fixed.is_some() {
         return Ok(());
     }
     Err(PlanError::Refused {
-        what: "maps.splat=cells with so large a map".into(),
+        what: format!("maps.splat=cells with so large a map, {layers} x {side} x {side} texels"),
         reason: "cells are added in integers, and a buffer of 128 MiB does not hold so many".into(),
-        remedy: "lower maps.side".into(),
+        remedy: "lower maps.side, or set maps.splat=fixed".into(),
     })
 }
 

@@ -26,6 +26,8 @@ pub static RASTER_FROM: Whole = Whole {
 const FROM_ON_SOFTWARE: u32 = 8;
 const FROM_ON_GPU: u32 = 256;
 
+/// The widest splat that is drawn, texels (`SPLAT_MAX_DIAMETER` of `glsl/shared/splat.glsl`).
+pub const MOST: u32 = 255;
 /// Kinds of splats of any size. Of ellipses, which are thin, the square that is drawn would be mostly empty.
 const ROUND: [&str; 2] = ["varying", "thin-lens"];
 /// Invocations of a work group that marks, and along one of its sides.
@@ -57,9 +59,12 @@ fn raster_from(settings: &Settings) -> u32 {
 
 /// Whether the kind of device decides which splats are drawn.
 pub fn hangs_on_device(settings: &Settings, axes: Axes<'_>) -> bool {
-    settings.whole(&RASTER_FROM) == 0
-        && axes.traverse == "compute"
-        && (axes.splat == "fixed" || ROUND.contains(&axes.splat))
+    settings.whole(&RASTER_FROM) == 0 && axes.traverse == "compute" && can_draw(axes)
+}
+
+/// Whether splats behind `compute` are drawn where they are large: any of any size, and fixed ones all or none.
+pub fn can_draw(axes: Axes<'_>) -> bool {
+    (axes.splat, axes.merge) == ("fixed", "none") || ROUND.contains(&axes.splat)
 }
 
 /// Whether fixed splats are so large that all of them are drawn.
@@ -72,7 +77,7 @@ impl Large {
     /// Buffers, for each size of view; none where no splat can be large.
     pub fn plan(job: &mut Job<'_>, axes: Axes<'_>, fixed: &Option<Fixed>) -> Vec<Self> {
         let from = raster_from(job.work.settings);
-        if fixed.is_none() || !ROUND.contains(&axes.splat) || from > 255 {
+        if fixed.is_none() || !ROUND.contains(&axes.splat) || from > MOST {
             return Vec::new();
         }
         let rows = job.work.plan.buffer("maps/large.rows", job.emissions.len() as u64 * Row::BYTES, Lifetime::Frame);

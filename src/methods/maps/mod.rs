@@ -11,6 +11,7 @@ mod hierarchy;
 mod large;
 mod points;
 mod pyramid;
+mod refused;
 mod sparse;
 mod splats;
 mod sums;
@@ -282,9 +283,12 @@ impl PlannedMaps {
         let views = views::receiving(job, axes, side, job.work.settings.whole(&SPLAT_SIZE));
         let splats = Splats::of(axes, job.work.settings);
         let layers = views::layers(&views, splats.levels())?;
+        if let Some(reason) = Axes::why_no_cells(job.work.settings, job.work.scene) {
+            job.work.plan.leave_out("maps/cells", reason);
+        }
         let views = job.work.plan.upload("maps/views", &views);
         let fixed = sums::fixed(job, axes, side, layers);
-        cells::check(axes, &fixed)?;
+        cells::check(axes, &fixed, (side, layers))?;
         let cells = Cells::plan(job, axes, side, views)?;
         let mut map =
             |name: &&str| job.work.plan.image_array(name, [side, side], layers, Format::Rgba32f, Lifetime::Frame);

@@ -1,6 +1,6 @@
 //! How large splats are, and into which level of the map they go (Wyman 2008, section 3.3).
 
-use super::{Axes, Job, SIDE, SPLAT, SPLAT_SIZE};
+use super::{Axes, Job, SIDE, SPLAT, SPLAT_SIZE, large};
 use crate::{
     gpu::PassBuilder,
     passes::light::{Blocks, Column, Emission},
@@ -15,14 +15,14 @@ pub static LEVEL_THRESHOLD: Real = Real {
     unit: "texels",
     default: Some(5.0),
     range: 1.0..=63.0,
-    doc: "with maps.splat = varying, the diameter beyond which a splat is of the next level; of levels from 4 on it is dropped",
+    doc: "with maps.splat = varying or thin-lens, the diameter beyond which a splat is of the next level; of levels from 4 on it is dropped",
 };
 
 pub static LEVEL: Choice = Choice {
     key: "maps.level",
     default: "trunc",
     words: &["trunc", "ceil"],
-    doc: "level of a varying splat of diameter D, from log2(max(1, D / level_threshold)): trunc, as the listing prints; ceil, \
+    doc: "level of a varying or thin-lens splat of diameter D, from log2(max(1, D / level_threshold)): trunc, as the listing prints; ceil, \
           as the text means, so that no splat is larger than the threshold in its level",
 };
 
@@ -74,6 +74,11 @@ pub struct Splats {
 
 /// Diameters that are drawn of `interpolated` splats, each twice the one before.
 const DIAMETERS: usize = 4;
+
+/// The widest of the narrowest of them whose widest is drawn as wide as it is.
+pub fn most_interpolated() -> u32 {
+    large::MOST >> (DIAMETERS - 1)
+}
 
 impl Splats {
     pub fn of(axes: Axes<'_>, settings: &Settings) -> Self {

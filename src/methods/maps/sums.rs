@@ -23,10 +23,26 @@ pub struct Fixed {
     unit: BufferId,
 }
 
+/// Bytes of a map's sums.
+fn bytes(splat: &str, side: u32, layers: u64) -> u64 {
+    let beyond = if splat == "cells" { cells::PLACES } else { 0 };
+    (u64::from(side).pow(2).saturating_mul(layers)).saturating_add(beyond).saturating_mul(BYTES)
+}
+
+/// Why no buffer holds the sums of cells in so many layers, if none does.
+pub fn too_large_for_cells(side: u32, layers: u64) -> Option<String> {
+    let bytes = bytes("cells", side, layers);
+    (bytes > BOUND).then(|| {
+        format!(
+            "cells in up to {layers} layers would take {bytes} bytes of sums, more than a buffer of 128 MiB holds: light is \
+             spread by fixed splats (lower maps.side, or set maps.splat)"
+        )
+    })
+}
+
 /// Whether the map's sums are in fixed point, and where; `None` where blending was asked for, or no buffer holds them.
 pub fn fixed(job: &mut Job<'_>, axes: Axes<'_>, side: u32, layers: u32) -> Option<Fixed> {
-    let beyond = if axes.splat == "cells" { cells::PLACES } else { 0 };
-    let bytes = (u64::from(side).pow(2) * u64::from(layers) + beyond) * BYTES;
+    let bytes = bytes(axes.splat, side, u64::from(layers));
     let reason = match axes.traverse {
         drawn if drawn != "compute" => format!("maps.traverse = {drawn}: splats are drawn, and so blended"),
         _ if large::all_drawn(job, axes) => {

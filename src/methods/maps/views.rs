@@ -2,14 +2,15 @@
 
 use glam::DVec2;
 
-use super::{Axes, BIND, Job, RECEIVERS, windows};
+use super::{Axes, BIND, Job, RECEIVERS, SIDE, SPLAT_SIZE, windows};
 use crate::{
     passes::{
         PlanError,
-        extents::Receiver,
+        extents::{self, Receiver},
         light::{self, Emission},
     },
-    scene::{Object, Shape},
+    scene::{Light, Object, Scene, Shape},
+    settings::Settings,
     view::{View, ViewData},
 };
 
@@ -87,6 +88,24 @@ pub fn layers(views: &[MapView], levels: u32) -> Result<u32, PlanError> {
         reason: format!("not every device has images of more than {MOST}"),
         remedy: "set maps.bind=none, light.view=fitted or maps.receivers=region, or lower light.area_samples".into(),
     })
+}
+
+/// Layers of the map at most, whatever the camera, of splats that have windows and one level.
+pub fn most_layers(scene: &Scene, settings: &Settings) -> u64 {
+    /// Any but the region's sees all.
+    const CAMERA: &str = "main";
+    let seen = extents::receiving(scene, CAMERA);
+    if settings.choice(&light::VIEW) == "shared" {
+        let points = |light: &Light| if light.kind.has_area() { settings.whole(&light::AREA_SAMPLES) } else { 1 };
+        let views: u64 = scene.lights.iter().map(|light| u64::from(points(light))).sum();
+        return views * if settings.choice(&BIND) == "none" { 1 } else { 2 * seen.len() as u64 };
+    }
+    let rectangles = match settings.choice(&RECEIVERS) {
+        "region" => 1,
+        _ => extents::receivers(scene, CAMERA).len() as u64,
+    };
+    let side = settings.whole(&SIDE);
+    rectangles + windows::most_layers(scene, settings, &seen, (side, margin(side, settings.whole(&SPLAT_SIZE))))
 }
 
 /// Texels about what a map shows.

@@ -17,6 +17,7 @@ use super::{
 use crate::{
     passes::extents,
     scene::{Canonical, Object, Scene, Shape},
+    settings::Settings,
     view::{Extent, View},
 };
 
@@ -54,8 +55,7 @@ pub fn of_shapes(job: &mut Job<'_>, axes: Axes<'_>, (side, full): (u32, f64), fi
         job.work.plan.leave_out("maps/windows", reason);
         return Vec::new();
     }
-    let fit = (f64::from(side) / (MARGINS * full)).floor().max(1.0) as u32;
-    let across = (shown.len() as f64).sqrt().ceil().min(f64::from(MOST.min(fit))) as usize;
+    let across = across(shown.len(), (side, full));
     let window = |(k, shown): (usize, Shown)| {
         let (place, layer) = (k % (across * across), first + k / (across * across));
         let at = DVec2::new((place % across) as f64, (place / across) as f64) / across as f64;
@@ -74,14 +74,36 @@ pub fn of_shapes(job: &mut Job<'_>, axes: Axes<'_>, (side, full): (u32, f64), fi
     shown.into_iter().enumerate().map(window).collect()
 }
 
+/// Windows along a layer's side, of so many.
+fn across(count: usize, (side, full): (u32, f64)) -> usize {
+    let fit = (f64::from(side) / (MARGINS * full)).floor().max(1.0) as u32;
+    (count as f64).sqrt().ceil().min(f64::from(MOST.min(fit))) as usize
+}
+
+/// Layers that windows take for the receivers `seen`.
+pub fn most_layers(scene: &Scene, settings: &Settings, seen: &[usize], sizes: (u32, f64)) -> u64 {
+    if settings.choice(&RECEIVERS) != "all" {
+        return 0;
+    }
+    let views = seen.iter().map(|&receiver| match &scene.objects[receiver].shape {
+        Shape::Quad { center, u, v } => usize::from(has_back(scene, *center, u.cross(*v))),
+        shape => 2 * frame_and_axes(shape).1.len(),
+    });
+    let count: usize = views.sum();
+    count.div_ceil(across(count, sizes).pow(2).max(1)) as u64
+}
+
+/// Whether light may come to a quad's back. Where the scene moves, what lies behind may change, and the views may not.
+fn has_back(scene: &Scene, center: DVec3, normal: DVec3) -> bool {
+    scene.moves() || lies_beyond(scene, center, -normal)
+}
+
 /// Of every receiver that the camera may see beside the region's, what no rectangle shows.
 fn shown(job: &Job<'_>) -> Vec<Shown> {
     let scene = job.work.scene;
     let views = job.work.seen.iter().flat_map(|&receiver| match &scene.objects[receiver].shape {
         Shape::Quad { center, u, v } => {
-            let normal = u.cross(*v);
-            // Where the scene moves, what lies behind may change, and the views may not.
-            let back = scene.moves() || lies_beyond(scene, *center, -normal);
+            let back = has_back(scene, *center, u.cross(*v));
             let view = View::of_rectangle(*center, -*u, *v, [DVec2::ZERO; 2], job.work.everything);
             back.then_some(Shown { receiver, view, sides: Sides::Facing }).into_iter().collect::<Vec<_>>()
         }
@@ -93,18 +115,23 @@ fn shown(job: &Job<'_>) -> Vec<Shown> {
 /// The views along the axes in which a shape has a surface.
 fn of_object(object: &Object, receiver: usize, everything: &Extent) -> Vec<Shown> {
     let content = extents::of_object(object);
-    let (frame, axes): (DMat3, &[usize]) = match &object.shape {
-        Shape::Canonical { kind: Canonical::Disk, to_world } => (frame_of(to_world), &[2]),
-        Shape::Canonical { kind: Canonical::Cylinder { .. }, to_world } => (frame_of(to_world), &[0, 1]),
-        Shape::Canonical { to_world, .. } | Shape::Mesh { to_world, .. } => (frame_of(to_world), &[0, 1, 2]),
-        Shape::Sphere { .. } | Shape::Quad { .. } => (DMat3::IDENTITY, &[0, 1, 2]),
-    };
+    let (frame, axes) = frame_and_axes(&object.shape);
     let views = axes.iter().flat_map(|&axis| [1.0, -1.0].map(|sign| (axis, sign)));
     let of = |(axis, sign): (usize, f64)| {
         let (out, right) = (sign * frame.col(axis), frame.col((axis + 1) % 3));
         Shown { receiver, view: along(out, right, &content, everything), sides: Sides::Shared }
     };
     views.map(of).collect()
+}
+
+/// A shape's frame, and the axes along which it is seen from both sides.
+fn frame_and_axes(shape: &Shape) -> (DMat3, &'static [usize]) {
+    match shape {
+        Shape::Canonical { kind: Canonical::Disk, to_world } => (frame_of(to_world), &[2]),
+        Shape::Canonical { kind: Canonical::Cylinder { .. }, to_world } => (frame_of(to_world), &[0, 1]),
+        Shape::Canonical { to_world, .. } | Shape::Mesh { to_world, .. } => (frame_of(to_world), &[0, 1, 2]),
+        Shape::Sphere { .. } | Shape::Quad { .. } => (DMat3::IDENTITY, &[0, 1, 2]),
+    }
 }
 
 /// Unit axes at right angles, the first of them along the object's own.

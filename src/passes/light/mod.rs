@@ -1,7 +1,7 @@
 //! Lights: their views, and the tracers that fill photon columns from each (Wyman 2008, section 2: the photon buffer).
 //!
-//! Cost: one dispatch of N² invocations a view; with `bvh` bound by traversal, 32 bytes written a photon for `maps`. The
-//! image-space tracers rasterise the view up to four times first (at most 92 bytes a photon) and are bound by fetches.
+//! Cost: one dispatch of N² invocations a view; with `bvh` bound by traversal, 32 bytes written a photon for `maps`, 36 for
+//! its cells and 20 for each of their (N + 1)² corners. The image-space tracers rasterise the view up to four times first (at most 92 bytes a photon) and are bound by fetches.
 //!
 //! In class `all:N` each sample grows a tree, and the buffer has `light.layers` layers, which cost their bytes whether a
 //! sample fills them or not.
@@ -45,7 +45,8 @@ pub static TILE: Whole = Whole {
     default: LARGEST,
     range: 1..=LARGEST,
     doc: "photons a side of the photon buffer, at most: views of more are traced and gathered tile by tile; the picture is \
-          the same, but for splats as wide as their neighbours are far, which know none beyond a tile",
+          the same, but for varying, thin-lens and elliptic splats, which know no neighbour beyond a tile, clusters, which end \
+          there, cells, of which each tile chooses which to trace finer, and float32 sums, in another order",
 };
 
 /// Every Vulkan device has images of so many texels a side (`maxImageDimension2D`).

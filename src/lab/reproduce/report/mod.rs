@@ -21,7 +21,7 @@ use crate::{
     whole::OutFolder,
 };
 use row::{Row, cells, short};
-use shape::{Shape, shape};
+use shape::{Shape, gains, shape};
 
 pub use catalogue::CatalogueReport;
 
@@ -56,6 +56,8 @@ pub struct ReproduceReport {
     photons: Vec<Arrived>,
     rows: Vec<Row>,
     shape: Vec<Shape>,
+    /// What the paper's steps gain.
+    gains: Vec<Shape>,
     warnings: Vec<String>,
     version: &'static str,
     commit: &'static str,
@@ -83,6 +85,7 @@ impl ReproduceReport {
             photons: Vec::new(),
             rows: published.figures.iter().map(|f| Row::missing(published, f, why(f))).collect(),
             shape: Vec::new(),
+            gains: Vec::new(),
             warnings: Vec::new(),
             version: env!("CARGO_PKG_VERSION"),
             commit: env!("NEPHROID_COMMIT"),
@@ -92,7 +95,7 @@ impl ReproduceReport {
 
     pub(super) fn measured(published: &Published, extent: &Extent, run: Run) -> Self {
         let rows = published.figures.iter().map(|figure| Row::of(published, figure, &run)).collect();
-        let shape = shape(published, &run);
+        let (shape, gains) = (shape(published, &run), gains(published, &run));
         let first = run.all.first();
         let mut warnings = run.warnings.clone();
         let device = first.map(|m| m.provenance.device().clone());
@@ -116,6 +119,7 @@ impl ReproduceReport {
             photons: run.all.iter().map(Arrived::of).collect(),
             rows,
             shape,
+            gains,
             warnings,
             pictures: run.all.into_iter().map(|m| (file_of(&m), m)).collect(),
             ..Self::unrun(published, extent)
@@ -200,11 +204,6 @@ impl Report for ReproduceReport {
                 missing,
             ]
         });
-        let shape = self.shape.iter().map(|s| {
-            let [measured, interval] = cells(Some(&s.measured));
-            let within = Cell::text(if s.within { "yes" } else { "no" });
-            vec![Cell::text(&s.from), Cell::text(&s.to), Cell::text(short(s.published)), measured, interval, within]
-        });
         let shot = self.photons.iter().filter(|p| p.valid_photons.is_some());
         let photons = shot.map(|p| {
             let n = Cell::Count(p.n.into());
@@ -226,10 +225,10 @@ impl Report for ReproduceReport {
             "points",
             "missing",
         ];
-        let of_shape = vec!["from", "to", "published ratio", "measured ratio", "99 %", "within"];
         vec![
             Table { name: "rows", columns: of_rows, rows: rows.collect() },
-            Table { name: "shape", columns: of_shape, rows: shape.collect() },
+            Shape::table("shape", &self.shape),
+            Shape::table("gains", &self.gains),
             Table {
                 name: "photons",
                 columns: vec!["variant", "n", "valid photons", "valid flux"],

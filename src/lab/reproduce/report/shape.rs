@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use crate::stats::Interval;
+use super::row::{cells, short};
 use crate::{
     gpu::FrameTimes,
     lab::{
+        Cell, Table,
         papers::{Figure, Published},
         reproduce::{
             asked::{Asked, Place},
@@ -13,6 +14,7 @@ use crate::{
             measure::Run,
         },
     },
+    stats::Interval,
 };
 
 /// How one figure of the table compares with another: what does not depend on how fast the machine is.
@@ -52,7 +54,48 @@ pub fn shape(published: &Published, run: &Run) -> Vec<Shape> {
     all
 }
 
+/// Of the paper's Table 3, its times behind each other whose ratio its text dwells on: the second's over the first's.
+const BESIDE: [[&str; 2]; 3] = [
+    ["gather_combine_all", "gather_fetch"],
+    ["gather_varying_multires", "gather_varying_single"],
+    ["gather_fetch", "gather_copy"],
+];
+/// The column that grows least with N.
+const GROWS: &str = "gather_combine_all";
+
+/// Of Table 3, what each of its steps gains, at the largest N that was measured of both columns, and how its last one
+/// grows from the least N to the largest.
+pub fn gains(published: &Published, run: &Run) -> Vec<Shape> {
+    if published.id != "maps.table3" {
+        return Vec::new();
+    }
+    let placed: Vec<Placed> = published.figures.iter().filter_map(|f| placed(published, f, run)).collect();
+    let of = |column: &'static str| placed.iter().filter(move |(figure, ..)| figure.column == column);
+    let beside = BESIDE.into_iter().filter_map(|[from, to]| {
+        let both = of(to).rev().find_map(|to| Some((of(from).find(|from| from.0.row == to.0.row)?, to)));
+        both.and_then(|(from, to)| Shape::of("columns", from, to, run))
+    });
+    let mut all: Vec<Shape> = beside.collect();
+    let ends = [of(GROWS).next(), of(GROWS).next_back()];
+    if let [Some(least), Some(most)] = ends
+        && least.0.row != most.0.row
+    {
+        all.extend(Shape::of("growth", least, most, run));
+    }
+    all
+}
+
 impl Shape {
+    pub fn table(name: &'static str, shapes: &[Self]) -> Table {
+        let rows = shapes.iter().map(|s| {
+            let [measured, interval] = cells(Some(&s.measured));
+            let within = Cell::text(if s.within { "yes" } else { "no" });
+            vec![Cell::text(&s.from), Cell::text(&s.to), Cell::text(short(s.published)), measured, interval, within]
+        });
+        let columns = vec!["from", "to", "published ratio", "measured ratio", "99 %", "within"];
+        Table { name, columns, rows: rows.collect() }
+    }
+
     /// None where the published figure is zero.
     fn of(kind: &'static str, from: &Placed, to: &Placed, run: &Run) -> Option<Self> {
         let take = |&(_, place, at): &Placed| move |frame: &FrameTimes| place.part.of(&run.all[at].stages, frame);
