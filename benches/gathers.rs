@@ -65,25 +65,42 @@ fn bench() -> Result<(), Fault> {
     for (name, _) in Scene::shipped() {
         let scene = Arc::new(Scene::load(name, &[])?);
         for gather in GATHERS {
-            let mut renderer = renderer(&gpu, &scene, &[("maps.gather", gather), ("light.side", "256")])?;
-            renderer.frame(&Frame::default())?;
-            let account = renderer.account()?;
-            if let Some(ratio) = renderer.energy(&account)?.ratio {
-                at_most(&format!("gathers/energy/{name}/{gather}"), "1", &[(ratio - 1.0).abs()], ENERGY, false);
-            }
+            let job = job(&scene, &[("maps.gather", gather), ("light.side", "256")], "region")?;
+            energy(&gpu, &job, &format!("{name}/{gather}"))?;
         }
+    }
+    // Receivers that lie behind each other, each with a layer of its own, which the region's camera does not see.
+    let room = Arc::new(Scene::load("room", &[])?);
+    for gather in GATHERS {
+        // Few photons: cells of so many branches are dear.
+        let job = job(&room, &[("maps.gather", gather), ("light.side", "64")], "main")?;
+        energy(&gpu, &job, &format!("room-main/{gather}"))?;
+    }
+    Ok(())
+}
+
+/// Flux in the map against what arrived.
+fn energy(gpu: &Gpu, job: &Job, what: &str) -> Result<(), Fault> {
+    let mut renderer = Renderer::new(gpu, job)?;
+    renderer.frame(&Frame::default())?;
+    let account = renderer.account()?;
+    if let Some(ratio) = renderer.energy(&account)?.ratio {
+        at_most(&format!("gathers/energy/{what}"), "1", &[(ratio - 1.0).abs()], ENERGY, false);
     }
     Ok(())
 }
 
 fn renderer(gpu: &Gpu, scene: &Arc<Scene>, set: &[(&str, &str)]) -> Result<Renderer, Fault> {
+    Ok(Renderer::new(gpu, &job(scene, set, "region")?)?)
+}
+
+fn job(scene: &Arc<Scene>, set: &[(&str, &str)], camera: &str) -> Result<Job, Fault> {
     let mut settings = Settings::default();
     for (key, value) in set {
         settings.set(&all_settings(), key, value)?;
     }
-    let (providers, camera) = (Providers::of(methods::find("maps")?), "region".to_owned());
-    let job = Job { scene: scene.clone(), providers, settings, camera, size: [SIDE; 2] };
-    Ok(Renderer::new(gpu, &job)?)
+    let providers = Providers::of(methods::find("maps")?);
+    Ok(Job { scene: scene.clone(), providers, settings, camera: camera.to_owned(), size: [SIDE; 2] })
 }
 
 /// Both errors of a picture.

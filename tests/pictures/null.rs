@@ -22,6 +22,9 @@ const BAND: f64 = 3.0;
 const MEAN_ERROR: f64 = 0.005;
 /// The error that 99 % of the pixels outside the band stay below.
 const PERCENTILE_99: f64 = 0.02;
+/// The same where clusters of photons become one splat with their first two moments: what is left of the third, which the lattice of
+/// clusters makes; measured 0.0218.
+const PERCENTILE_99_MERGED: f64 = 0.025;
 /// Share of the band's flux that may be missing in each sector: photons stand for whole texels of the light's view.
 const SECTOR_ERROR: f64 = 0.01;
 const SECTORS: usize = 8;
@@ -135,7 +138,7 @@ impl Null<'_> {
 
 impl Figures {
     /// What does not hold.
-    fn faults(&self) -> Vec<String> {
+    fn faults(&self, percentile: f64) -> Vec<String> {
         let mut faults = Vec::new();
         let mut hold = |what: String, error: f64, bound: f64| {
             if worst([error]) > bound {
@@ -143,7 +146,7 @@ impl Figures {
             }
         };
         hold("mean outside the band".into(), self.mean, MEAN_ERROR);
-        hold("99th percentile outside the band".into(), self.percentile, PERCENTILE_99);
+        hold("99th percentile outside the band".into(), self.percentile, percentile);
         for (k, sector) in self.sectors.iter().enumerate() {
             hold(format!("band in sector {k}"), sector.unwrap_or(0.0), SECTOR_ERROR);
         }
@@ -153,8 +156,9 @@ impl Figures {
 }
 
 /// The ball vanishes, and neither does its shadow without a caustic, nor one that is too bright.
-fn vanishes(gpu: &Gpu, name: &str, scene: Scene, sectors: usize) {
-    let job = job_of(scene, &SETTINGS, "region", [PIXELS; 2]);
+fn vanishes(gpu: &Gpu, name: &str, scene: Scene, gather: &str, sectors: usize) {
+    let set = [&SETTINGS[..], &[("maps.gather", gather)]].concat();
+    let job = job_of(scene, &set, "region", [PIXELS; 2]);
     let picture = picture(gpu, &job);
     let null = Null::of(&job.scene);
     let figures = null.figures(&picture, 1.0);
@@ -166,18 +170,22 @@ fn vanishes(gpu: &Gpu, name: &str, scene: Scene, sectors: usize) {
         figures.region,
         band.join(", ")
     );
-    assert_eq!(figures.faults(), Vec::<String>::new(), "{name}");
+    let percentile = if gather == "combine-exact" { PERCENTILE_99_MERGED } else { PERCENTILE_99 };
+    assert_eq!(figures.faults(percentile), Vec::<String>::new(), "{name}");
     assert!(band.len() >= sectors, "{name}: the band shows in {} sectors", band.len());
 
-    let without = null.figures(&picture, 0.0).faults();
+    let without = null.figures(&picture, 0.0).faults(percentile);
     assert!(without.len() >= 2 + sectors, "{name}, no caustic, found only {without:?}");
-    let bright = null.figures(&picture, TOO_BRIGHT).faults();
+    let bright = null.figures(&picture, TOO_BRIGHT).faults(percentile);
     assert!(bright.iter().any(|f| f.starts_with("region")), "{name}, too bright, found only {bright:?}");
 }
 
 #[test]
 fn under_the_sun_overhead() {
-    vanishes(&gpu(), "sun overhead", scene("null", &[]), SECTORS);
+    let gpu = gpu();
+    for gather in ["fixed", "fetch", "elliptic", "combine-exact"] {
+        vanishes(&gpu, &format!("sun overhead, {gather}"), scene("null", &[]), gather, SECTORS);
+    }
 }
 
 /// The shadow's far end leaves the region, and with it some sectors of its edge.
@@ -185,7 +193,7 @@ fn under_the_sun_overhead() {
 fn under_the_sun_at_forty_degrees() {
     let (sine, cosine) = 40f64.to_radians().sin_cos();
     let direction = format!("[{sine}, {}, 0.0]", -cosine);
-    vanishes(&gpu(), "sun at 40°", scene("null", &[("lights.sun.direction", &direction)]), 5);
+    vanishes(&gpu(), "sun at 40°", scene("null", &[("lights.sun.direction", &direction)]), "fixed", 5);
 }
 
 #[test]
@@ -193,5 +201,5 @@ fn under_a_point_light() {
     let sun = "[lights.sun.directional]\ndirection = [0.0, -1.0, 0.0]\nirradiance = 1.0";
     let lamp = "[lights.lamp.point]\nposition = [0.6, 6.0, 0.4]\nintensity = 50.0";
     let text = rewritten("null", &[(sun, lamp)], "");
-    vanishes(&gpu(), "point light", written(&text, &[]), SECTORS);
+    vanishes(&gpu(), "point light", written(&text, &[]), "fixed", SECTORS);
 }
