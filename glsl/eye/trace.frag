@@ -88,11 +88,21 @@ void look(Surface s, vec3 d) {
         if (m.kind == MATERIAL_DIFFUSE) {
             share *= albedo(at) / PI;
             direct.rgb += share * direct_irradiance(at, b.d);
+#ifdef SEARCHES
+            search_cut = false;
+#endif
             caustic.rgb += share * surface_irradiance(at.p, facing_normal(at, b.d), at.object, at.uv);
+#ifdef SEARCHES
+            caustic.a += search_cut ? 1.0 : 0.0; // read back alone: no layer has it
+#endif
         } else if (b.events < DEPTH) {
             split(at, b.d, share, b.media, b.events);
         }
     }
+#ifdef SEARCHES
+    caustic.a += float(branch_count); // none, but where the device ends this loop too
+    branch_count = 0;
+#endif
 }
 
 void main() {
@@ -103,7 +113,13 @@ void main() {
     sky = vec4(0.0);
 #endif
     int samples = push.samples * push.samples;
+#ifdef SEARCHES
+    int begun = 0; // as in surface.frag
+#endif
     for (int k = 0; k < samples; k++) {
+#ifdef SEARCHES
+        begun++;
+#endif
 #ifdef AREA_SAMPLES
         eye_sample = k;
         eye_samples = samples;
@@ -118,6 +134,9 @@ void main() {
         look(s, d);
 #endif
     }
+#ifdef SEARCHES
+    caustic.a += float(samples - begun);
+#endif
     direct /= float(samples);
     caustic /= float(samples);
 #ifdef SKY

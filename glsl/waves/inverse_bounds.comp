@@ -39,6 +39,9 @@ void main() {
             vec2 a = down.x * low, b = down.x * high, c = down.y * low, d = down.y * high;
             join(all.near, ray.start.xy + min(a, b), ray.start.xy + max(a, b));
             join(all.far, ray.start.xy + min(c, d), ray.start.xy + max(c, d));
+            // A receiver above the ray's start is asked for as where it starts.
+            if (down.x < 0.0) join(all.near, ray.start.xy, ray.start.xy);
+            if (down.y < 0.0) join(all.far, ray.start.xy, ray.start.xy);
         }
 #else
         ivec2 child = 2 * at + ivec2(k & 1, k >> 1);

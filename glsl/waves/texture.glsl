@@ -13,7 +13,7 @@ vec4 texel(ivec2 at, int level) {
 
 #ifdef WAVES_CUBIC
 // Of Catmull and Rom: exact where what is between texels is a parabola. Straight lines between them leave copies of the picture's
-// spectrum along the axes, a cross about every bright spot; these have a fiftieth of its power.
+// spectrum along the axes, a cross about every bright spot; these have a 45th of its power.
 vec4 cubic(float f) {
     float a = 1.0 - f;
     return 0.5 * vec4(-f * a * a, 2.0 - f * f * (5.0 - 3.0 * f), 2.0 - a * a * (5.0 - 3.0 * a), -a * f * f);

@@ -73,8 +73,13 @@ impl Renderer {
         self.program.run(Phase::Account, &[])?;
         let rows: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&self.program.read_buffer(left.buffer)?);
         let [dark, grazed] = [0, 1].map(|word: usize| rows.iter().map(|row| u64::from(row[word])).sum());
-        let texels = self.planned.layers.irradiance_caustic.map(|image| self.program.read_image(image)).transpose()?;
-        let cut_pixels = texels.iter().flat_map(|t| t.chunks_exact(4)).filter(|texel| texel[3] > 0.0).count() as u64;
+        // Alpha counts searches that were ended: of what is seen straight on, and through and in specular objects.
+        let layers = self.planned.layers;
+        let images = [layers.irradiance_caustic, layers.caustic].map(|image| image.map(|i| self.program.read_image(i)));
+        let [straight, all] = images.map(Option::transpose);
+        let (straight, all) = (straight?.unwrap_or_default(), all?.unwrap_or_default());
+        let pixels = straight.chunks_exact(4).zip(all.chunks_exact(4));
+        let cut_pixels = pixels.filter(|(a, b)| a[3] > 0.0 || b[3] > 0.0).count() as u64;
         Ok(Some(Unresolved { pieces: left.pieces, dark, grazed, cut_pixels }))
     }
 

@@ -176,7 +176,7 @@ pub fn wave(key: &Key, file: &WaveFile, sides: [DVec3; 3], unit: f64) -> Result<
             given.unwrap_or(paper),
             CONSTANTS,
             "a constant of the wave",
-            "the paper's are the defaults",
+            "the paper's are the defaults; with vertex_size = 1e-6 the water has no waves",
         )
     };
     let octaves = file.octaves.unwrap_or(Wave::PAPER.octaves);

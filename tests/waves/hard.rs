@@ -51,16 +51,19 @@ fn every_variant_has_an_answer_everywhere() {
 #[test]
 fn a_camera_in_the_water_sees_it_and_twice_the_same() {
     let gpu = gpu();
-    let set = [
-        ("scene.cameras.main.pinhole.position", "[0, 0, 0]"),
-        ("scene.cameras.main.pinhole.target", "[0.1, -0.4, 0]"),
-        ("waves.variant", "texture"),
-        ("waves.side", "32"),
-    ];
-    let job = waves(PAPER, &set, "main", SIZE);
-    let [once, twice] = [0, 1].map(|_| picture(&gpu, &job));
-    assert!(once.sum("irradiance.caustic") + once.sum("caustic") > 0.0);
-    assert_eq!(once.layers, twice.layers);
+    for variant in VARIANTS.into_iter().chain(["inverse"]) {
+        let set = [
+            ("scene.cameras.main.pinhole.position", "[0, 0, 0]"),
+            ("scene.cameras.main.pinhole.target", "[0.1, -0.4, 0]"),
+            ("waves.variant", variant),
+            ("waves.side", "32"),
+            ("eye.samples", "1"),
+        ];
+        let job = waves(PAPER, &set, "main", SIZE);
+        let [once, twice] = [0, 1].map(|_| picture(&gpu, &job));
+        assert!(once.sum("irradiance.caustic") + once.sum("caustic") > 0.0, "{variant}");
+        assert_eq!(once.layers, twice.layers, "{variant}");
+    }
 }
 
 /// Black pictures are warned of by every variant, and nothing is planned for them.

@@ -266,6 +266,22 @@ fn pixels_whose_search_the_device_ends_are_counted() {
     assert_eq!(cut > 0, many < 0.99 * whole, "{cut} pixels, {many} of {whole}");
 }
 
+/// As well of what is seen through the water, where a pixel's samples go through one loop more.
+#[test]
+fn pixels_whose_search_through_water_the_device_ends_are_counted() {
+    let gpu = gpu();
+    let of = |samples: &'static str, size: u32| {
+        let job = inverse(PAPER, &[("eye.samples", samples)], "main", [size; 2]);
+        let picture = picture(&gpu, &job);
+        (picture.sum("caustic"), unresolved(&gpu, &job).cut_pixels)
+    };
+    // The same samples across the picture.
+    let ((whole, none), (many, cut)) = (of("1", 24), of("4", 6));
+    println!("{cut} pixels of 36 were cut; light {many} of {whole}");
+    assert_eq!(none, 0);
+    assert_eq!(cut > 0, many < 0.95 * whole, "{cut} pixels, {many} of {whole}");
+}
+
 #[test]
 fn an_eye_in_the_water_sees_the_same_twice() {
     let place = ("scene.cameras.main.pinhole.position", "[0, -0.2, 0.1]");

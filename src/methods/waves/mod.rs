@@ -53,7 +53,7 @@ static FILTER: Choice = Choice {
     default: "linear",
     words: &["cubic", "linear"],
     doc: "with waves.variant = texture, what lies between texels: linear, as hardware has it, which shows a cross about bright spots; \
-          cubic: ours, of 16 texels, with a fortieth of its power",
+          cubic: ours, of 16 texels, with a 45th of its power",
 };
 
 static SUN_WIDTH: Real = Real {
