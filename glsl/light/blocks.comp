@@ -12,6 +12,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(push_constant, scalar) uniform Push {
+    ivec2 size; // slots that lie in the view
     uint light;
     uint view;
     float side; // texels of what the method measures in
@@ -50,7 +51,7 @@ void main() {
     ivec2 block = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(block, ivec2(BLOCKS)))) return;
     for (int k = 0; k < 9; k++) around[k] = seen(block + ivec2(k % 3, k / 3) - 1);
-    bool lit = false, edge = false;
+    bool lit = false, edge = false, pair = false;
     float apart = 0.0; // texels a slot
     for (int k = 0; k < 9; k++) {
         if (!around[k].known) continue;
@@ -60,14 +61,18 @@ void main() {
             int next = axis == 0 ? k + 1 : k + 3;
             if (axis == 0 ? k % 3 == 2 : k >= 6) continue;
             if (around[k].way == 0.0 || around[next].way != around[k].way || around[next].place != around[k].place) continue;
+            pair = true;
             vec2 way = around[next].at - around[k].at;
             apart = max(apart, length(way) / float(BLOCK_SIDE));
         }
     }
     int level = BLOCK_LEVELS;
+    // One that the view's end cuts has all its photons: others would stand for fewer slots than their stride says.
+    bool cut = any(greaterThan((block + 1) * BLOCK_SIDE, push.size));
     if (lit) {
         float most = edge ? push.edge : push.most;
-        level = apart > 0.0 ? int(floor(clamp(log2(most / apart), 0.0, float(BLOCK_LEVELS)))) : edge ? 0 : BLOCK_LEVELS;
+        if (!pair || cut) level = 0;
+        else if (apart > 0.0) level = int(floor(clamp(log2(most / apart), 0.0, float(BLOCK_LEVELS))));
     }
     block_strides.data[push.view * uint(BLOCKS_MOST) + number_of(block)] = uint(level);
 }

@@ -11,6 +11,7 @@ struct EdgePhoton {
     vec3 p;
     uint way; // 0: none
     uint receiver;
+    float flux; // W, all bands
 };
 
 struct Edges {

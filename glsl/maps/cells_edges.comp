@@ -21,7 +21,7 @@ layout(set = 0, binding = 18, scalar) readonly buffer List { uvec2 data[]; } cel
 #include "maps/cell_edges.glsl"
 
 void store_edge(uint cell, int number, int photon, Photon p) {
-    cells_edges.data[cell].photons[number * PHOTONS + photon] = EdgePhoton(p.hit, photon_way(p), p.receiver);
+    cells_edges.data[cell].photons[number * PHOTONS + photon] = EdgePhoton(p.hit, photon_way(p), p.receiver, p.flux.r + p.flux.g + p.flux.b);
 }
 
 uint traced_cell; // the cell and the number of the sample that is traced

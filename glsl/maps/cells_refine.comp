@@ -211,7 +211,8 @@ bool recall_edge(int number, ivec2 cell, ivec2 step) {
     }
     for (int k = 0; k < PHOTONS; k++) {
         EdgePhoton known = cells_edges.data[edges_of(owner)].photons[edge_number(step) * PHOTONS + k];
-        arrivals[number][k] = Arrival(known.p, known.way, vec3(0.0), 0.0, known.receiver);
+        // Of its flux the sum is asked for alone.
+        arrivals[number][k] = Arrival(known.p, known.way, vec3(known.flux, 0.0, 0.0), 0.0, known.receiver);
     }
     return true;
 }

@@ -55,7 +55,7 @@ const BANDS: f64 = 3.0;
 const CELL_BYTES: u64 = 8;
 /// Bytes of a photon of a sample on a cell's edges, how many samples a cell has there (`EDGE_SAMPLES` of
 /// `glsl/maps/cell_edges.glsl`), and what a cell has besides.
-const EDGE_BYTES: u64 = 20;
+const EDGE_BYTES: u64 = 24;
 const EDGE_SAMPLES: u64 = 6;
 const LISTED_BYTES: u64 = 4;
 /// A buffer that every device has. With more cells neighbours trace their common edges each for itself.

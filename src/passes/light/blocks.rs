@@ -45,6 +45,7 @@ pub struct Blocks {
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct ChoosePush {
+    size: [i32; 2],
     light: u32,
     view: u32,
     side: f32,
@@ -68,7 +69,7 @@ impl Blocks {
         plan: &mut Plan,
         settings: &Settings,
         emissions: &[Emission],
-        layers: u32,
+        layers: Option<u32>,
         levels: u32,
     ) -> Result<Self, PlanError> {
         let refused = |what: String, reason: &str, remedy: &str| {
@@ -79,7 +80,7 @@ impl Blocks {
             let what = format!("emission in blocks with light.tracer={tracer}");
             return refused(what, "its images show one sample a slot, and none between", "set light.tracer=bvh");
         }
-        if layers > 1 {
+        if layers.is_some() {
             let reason = "a sample leaves several photons, and which of its neighbours' each lies beside is not known";
             return refused(
                 "emission in blocks in class all:N".into(),
@@ -138,12 +139,12 @@ impl Blocks {
         let pass = self.tell(plan.pass(&name_of("light/blocks")), side).write("block_strides", self.strides);
         let pass = pass.with(tracing.photons.fetch(&[Column::Hit, Column::Flux, Column::Way]));
         let pass = pass.with(reads).provide("measure.glsl", file);
-        let pass = pass.push(&ChoosePush { light: tracing.emission.lamp, view, side: texels, apart });
+        let size = tracing.emission.held().map(|n| n as i32);
+        let pass = pass.push(&ChoosePush { size, light: tracing.emission.lamp, view, side: texels, apart });
         pass.dispatch("light/blocks.comp", [across, across, 1], GROUP * GROUP);
 
         let before = self.before_of(tracing.photons);
         let pass = self.define(plan.pass(&name_of("light/blocks.count")), side).write("blocks_before", before);
-        let size = tracing.emission.held().map(|n| n as i32);
         let pass = pass.write("blocks_rows", self.rows).push(&CountPush { size, view });
         pass.dispatch("light/blocks_count.comp", [1, 1, 1], COUNTING);
 

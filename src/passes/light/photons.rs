@@ -55,7 +55,7 @@ pub struct Photons {
     /// Texels a side.
     pub side: u32,
     /// Layers, where each sample can leave several photons: shaders then see arrays, and LAYERS.
-    layers: Option<u32>,
+    pub(super) layers: Option<u32>,
     /// Where columns are float16: units a watt of the flux, a power of two.
     half: Option<f64>,
     columns: Vec<(Column, ImageId)>,

@@ -103,7 +103,7 @@ pub fn shoot<T: Taker>(
     let tracer = Tracer::plan(plan, &bench)?;
     let blocks = match wanted.blocks {
         0 => None,
-        levels => Some(Blocks::plan(plan, settings, &emissions, all[0].layers(), levels)?),
+        levels => Some(Blocks::plan(plan, settings, &emissions, all[0].layers, levels)?),
     };
     let blocks = blocks.as_ref();
     let work = Work { plan, ..*work };
