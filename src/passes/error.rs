@@ -19,3 +19,11 @@ pub enum PlanError {
         remedy: String,
     },
 }
+
+/// What is refused, why, and what to do instead.
+///
+/// # Errors
+/// Always [`PlanError::Refused`].
+pub fn refused<T>(what: impl Into<String>, reason: impl Into<String>, remedy: &str) -> Result<T, PlanError> {
+    Err(PlanError::Refused { what: what.into(), reason: reason.into(), remedy: remedy.into() })
+}

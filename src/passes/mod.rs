@@ -12,5 +12,5 @@ pub mod sky;
 pub mod water;
 mod work;
 
-pub use error::PlanError;
+pub use error::{PlanError, refused};
 pub use work::Work;

@@ -37,13 +37,9 @@ fn a_share_of_each_metre_is_an_absorption() {
 fn the_sun_map_has_the_edge_and_the_distance_that_are_set() {
     let (gpu, size, width) = (gpu(), [32, 32], SUN.to_string());
     for variant in ["pixel", "shortcut"] {
-        let set = [
-            ("waves.variant", variant),
-            ("waves.sun_width", &width),
-            ("waves.sun_edge", "0.4"),
-            ("waves.sun_distance", "1.3"),
-        ];
-        let job = waves(PAPER, &set, "region", size);
+        let set = [("waves.variant", variant), ("waves.sun_width", &width), ("waves.sun_edge", "0.4")];
+        let distance = (variant == "shortcut").then_some(("waves.sun_distance", "1.3"));
+        let job = waves(PAPER, &[&set, distance.as_slice()].concat(), "region", size);
         let mut model = Model::of(&job.scene, SUN);
         (model.edge, model.distance) = (0.4, 1.3);
         let pixels = Pixels { region: &job.scene.region, size };

@@ -5,7 +5,7 @@ use nephroid::{methods::Outcome, passes::account::Account, renderer::plan};
 use crate::{
     PAPER, VARIANTS,
     common::{gpu, picture::picture},
-    shown, waves,
+    shown, sized, waves,
 };
 
 /// Odd, so that a pixel looks at the region's very middle.
@@ -29,7 +29,7 @@ fn every_variant_has_an_answer_everywhere() {
     ];
     for variant in VARIANTS {
         for (case, set) in &cases {
-            let set = [*set, &[("waves.variant", variant), ("waves.side", "32"), ("waves.mesh", "16")]].concat();
+            let set = [*set, &[("waves.variant", variant)], sized(variant, "16", "32").as_slice()].concat();
             let (light, _) = shown(&gpu, &waves(PAPER, &set, "region", SIZE));
             let (dark, lit) = (light.iter().filter(|x| **x == 0.0).count(), light.iter().filter(|x| **x > 0.0).count());
             // The listing knows neither depth nor refraction.
@@ -56,10 +56,9 @@ fn a_camera_in_the_water_sees_it_and_twice_the_same() {
             ("scene.cameras.main.pinhole.position", "[0, 0, 0]"),
             ("scene.cameras.main.pinhole.target", "[0.1, -0.4, 0]"),
             ("waves.variant", variant),
-            ("waves.side", "32"),
             ("eye.samples", "1"),
         ];
-        let job = waves(PAPER, &set, "main", SIZE);
+        let job = waves(PAPER, &[&set, sized(variant, "16", "32").as_slice()].concat(), "main", SIZE);
         let [once, twice] = [0, 1].map(|_| picture(&gpu, &job));
         assert!(once.sum("irradiance.caustic") + once.sum("caustic") > 0.0, "{variant}");
         assert_eq!(once.layers, twice.layers, "{variant}");

@@ -50,6 +50,15 @@ fn off(shown: &[f64], expected: &[f64]) -> f64 {
     worst(shown.iter().zip(expected).map(|(a, b)| a - b))
 }
 
+/// What a variant has a size of, if any: its mesh, or its target.
+fn sized<'a>(variant: &str, mesh: &'a str, side: &'a str) -> Option<(&'static str, &'a str)> {
+    match variant {
+        "vertex" => Some(("waves.mesh", mesh)),
+        "texture" => Some(("waves.side", side)),
+        _ => None,
+    }
+}
+
 #[test]
 fn each_variant_is_its_equations() {
     let (gpu, size) = (gpu(), [48, 48]);
@@ -57,14 +66,9 @@ fn each_variant_is_its_equations() {
     let texels_a_pixel = 0.6 / 48.0 * 256.0;
     for variant in VARIANTS {
         for time in ["0", "0.7"] {
-            let set = [
-                ("waves.variant", variant),
-                ("waves.sun_width", &width),
-                ("waves.mesh", "40"),
-                ("waves.side", "256"),
-                ("scene.objects.water.wave.time", time),
-            ];
-            let job = waves(PAPER, &set, "region", size);
+            let set =
+                [("waves.variant", variant), ("waves.sun_width", &width), ("scene.objects.water.wave.time", time)];
+            let job = waves(PAPER, &[&set, sized(variant, "40", "256").as_slice()].concat(), "region", size);
             let (model, pixels) = (Model::of(&job.scene, SUN), Pixels { region: &job.scene.region, size });
             let expected = Model::of_pixels(&pixels, |p| match variant {
                 "listing" => model.listing(p, 1.0),
@@ -103,7 +107,8 @@ fn the_texture_becomes_the_pixels_at_second_order() {
 fn the_texture_costs_the_same_whatever_is_seen() {
     let gpu = gpu();
     let of = |variant, size| {
-        let job = waves(PAPER, &[("waves.variant", variant), ("waves.side", "64")], "region", size);
+        let set = [&[("waves.variant", variant)], sized(variant, "64", "64").as_slice()].concat();
+        let job = waves(PAPER, &set, "region", size);
         let mut renderer = Renderer::new(&gpu, &job).unwrap();
         renderer.frame(&Frame::default()).unwrap();
         let counters = renderer.counters(&Frame::default()).unwrap();
@@ -127,9 +132,17 @@ fn what_cannot_be_is_refused_or_left_out_with_the_reason() {
         let screen = refused(&[("waves.variant", variant), ("waves.screen_depth", "on")]);
         assert!(screen.contains("no screen is known"), "{screen}");
     }
-    for (variant, key, value) in
-        [("inverse", "waves.sun_width", "5"), ("inverse", "waves.sun_edge", "1"), ("listing", "waves.absorbed", "0.2")]
-    {
+    for (variant, key, value) in [
+        ("inverse", "waves.sun_width", "5"),
+        ("inverse", "waves.sun_edge", "1"),
+        ("listing", "waves.absorbed", "0.2"),
+        ("pixel", "waves.mesh", "7"),
+        ("vertex", "waves.side", "64"),
+        ("pixel", "waves.anisotropy", "4"),
+        ("shortcut", "waves.filter", "cubic"),
+        ("pixel", "waves.sun_distance", "3"),
+        ("texture", "waves.cells", "64"),
+    ] {
         let unused = refused(&[("waves.variant", variant), (key, value)]);
         assert!(unused.contains(&format!("{key}={value} with waves.variant={variant}")), "{unused}");
         assert!(unused.contains(&format!("do not set {key}")), "{unused}");

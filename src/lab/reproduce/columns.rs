@@ -150,10 +150,15 @@ impl Variant {
     /// Everything that it sets, for N² photons.
     pub fn set(self, side: u32) -> Vec<(String, String)> {
         if let Some(waves) = self.waves {
-            let sizes = ["waves.mesh", "waves.side"].map(|key| (key.to_owned(), side.to_string()));
+            let size = match waves {
+                "vertex" => Some("waves.mesh"),
+                "texture" => Some("waves.side"),
+                _ => None,
+            };
+            let size = size.map(|key| (key.to_owned(), side.to_string()));
             let samples = self.magnified.map(|_| ("eye.samples".to_owned(), "1".to_owned()));
             let own = [("waves.variant".to_owned(), waves.to_owned())];
-            return own.into_iter().chain(sizes).chain(samples).collect();
+            return own.into_iter().chain(size).chain(samples).collect();
         }
         let own = [("maps.gather", self.gather), ("maps.copy", self.copy), ("maps.cull", self.cull)];
         let splat = self.splat.into_iter().flat_map(|splat| [("maps.traverse", "fetch"), ("maps.splat", splat)]);

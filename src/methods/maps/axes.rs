@@ -1,8 +1,8 @@
 //! The axes of gathering photons, and the paper's columns as presets of them.
 
-use super::{SIDE, SPLAT_SIZE, large::RASTER_FROM, refused, sums, views};
+use super::{SIDE, SPLAT_SIZE, blocks, large::RASTER_FROM, sums, unused, views};
 use crate::{
-    passes::{PlanError, light},
+    passes::{PlanError, light, refused},
     scene::{PathClass, Scene},
     settings::{Choice, Setting, Settings},
 };
@@ -49,7 +49,7 @@ pub static SPLAT: Choice = Choice {
     key: "maps.splat",
     default: AUTO,
     words: &[AUTO, "fixed", "varying", "thin-lens", "interpolated", "elliptic", "cells"],
-    doc: "how large splats are: auto: cells, but fixed where another axis, maps.splat_size or maps.raster_from is set for splats, in \
+    doc: "how large splats are: auto: cells, but fixed where another axis, maps.splat_size, maps.raster_from or maps.blocks is set for splats, in \
           class all:N, whose cells are dear, and where 24 bytes of sums for each texel of all layers that any camera asks for are more than 128 MiB; fixed: maps.splat_size; varying: as far as neighbouring photons lie apart (section 3.3); our reading of what \
           its Fig. 7 compares: thin-lens: by where neighbouring rays come nearest; interpolated: of four sizes those that \
           a dozen photons fall into; ours: elliptic: ellipses that reach to the photons beside them; cells: no splats: the light between the corners of a photon's texel, exactly where \
@@ -124,6 +124,7 @@ impl<'s> Axes<'s> {
     fn asks_for_cells(self, settings: &Settings, scene: &Scene) -> bool {
         let plain = (self.traverse, self.merge, self.target) == ("compute", "none", "single");
         let splats = [&SPLAT_SIZE, &RASTER_FROM].iter().any(|key| settings.is_set(Setting::Whole(key)));
+        let splats = splats || blocks::levels(settings) > 0;
         let one_way = !matches!(light::paths(scene, settings), PathClass::All(_));
         plain && !splats && one_way
     }
@@ -188,7 +189,7 @@ impl<'s> Axes<'s> {
                 "cells cover the texels that they cover, however many",
                 "set maps.target=single",
             ),
-            _ => refused::check(settings, axes).map(|()| axes),
+            _ => unused::check(settings, axes).map(|()| axes),
         }
     }
 
@@ -211,10 +212,6 @@ impl<'s> Axes<'s> {
 /// who looks.
 fn no_room(settings: &Settings, scene: &Scene) -> Option<String> {
     sums::too_large_for_cells(settings.whole(&SIDE), views::most_layers(scene, settings))
-}
-
-fn refused<T>(what: impl Into<String>, reason: impl Into<String>, remedy: &str) -> Result<T, PlanError> {
-    Err(PlanError::Refused { what: what.into(), reason: reason.into(), remedy: remedy.into() })
 }
 
 #[cfg(test)]
@@ -244,9 +241,13 @@ mod tests {
         };
         assert_eq!(splat("glass-sphere", &[]), "cells");
         assert_eq!(splat("room", &[]), "fixed", "all:3");
-        for set in
-            [("maps.splat_size", "5"), ("maps.merge", "exact"), ("maps.traverse", "fetch"), ("maps.side", "4096")]
-        {
+        for set in [
+            ("maps.splat_size", "5"),
+            ("maps.merge", "exact"),
+            ("maps.traverse", "fetch"),
+            ("maps.side", "4096"),
+            ("maps.blocks", "2"),
+        ] {
             assert_eq!(splat("glass-sphere", &[set]), "fixed", "{set:?}");
         }
         let scene = Scene::load("glass-sphere", &[]).unwrap();

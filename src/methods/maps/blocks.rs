@@ -2,7 +2,7 @@
 
 use super::{Axes, Job, Splats};
 use crate::{
-    passes::{PlanError, light::Column},
+    passes::{PlanError, light::Column, refused},
     settings::{Settings, Whole},
 };
 
@@ -57,7 +57,7 @@ pub fn check(settings: &Settings, axes: Axes<'_>) -> Result<(), PlanError> {
         _ => return Ok(()),
     };
     let what = format!("maps.blocks={} with {with}", levels(settings));
-    Err(PlanError::Refused { what, reason: reason.into(), remedy: remedy.into() })
+    refused(what, reason, remedy)
 }
 
 /// Texels that photons of a block may lie apart at most, and where light breaks: what a splat and a pixel of a picture of

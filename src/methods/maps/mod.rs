@@ -11,10 +11,10 @@ mod hierarchy;
 mod large;
 mod points;
 mod pyramid;
-mod refused;
 mod sparse;
 mod splats;
 mod sums;
+mod unused;
 mod views;
 mod windows;
 

@@ -12,7 +12,7 @@ use grids::{Mesh, Target};
 use super::{Link, Method, Outcome, Planned, Provided, Shown, Slot};
 use crate::{
     gpu::{PassBuilder, Resource},
-    passes::{PlanError, Work, eye::SurfaceProvider, water::Water},
+    passes::{PlanError, Work, eye::SurfaceProvider, refused, water::Water},
     settings::{Choice, Real, Setting, Settings, Whole},
 };
 
@@ -257,13 +257,25 @@ fn check(settings: &Settings) -> Result<(), PlanError> {
         "listing" => &[(Setting::Real(&ABSORBED), "the printed code knows no depth")],
         _ => &[],
     };
-    let Some((set, reason)) = unused.iter().find(|(setting, _)| settings.is_set(*setting)) else { return Ok(()) };
-    Err(PlanError::Refused {
-        what: format!("{}={} with waves.variant={variant}", set.key(), settings.text(*set)),
-        reason: (*reason).into(),
-        remedy: format!("do not set {}, or use another waves.variant", set.key()),
-    })
+    let unused = unused.iter().map(|(setting, reason)| (*setting, (*reason).to_owned()));
+    let of_others = OF_ONE.iter().filter(|(_, owner)| *owner != variant);
+    let of_others = of_others.map(|(setting, owner)| (*setting, format!("waves.variant={owner} alone reads it")));
+    let Some((set, reason)) = unused.chain(of_others).find(|(setting, _)| settings.is_set(*setting)) else {
+        return Ok(());
+    };
+    let what = format!("{}={} with waves.variant={variant}", set.key(), settings.text(set));
+    refused(what, reason, &format!("do not set {}, or use another waves.variant", set.key()))
 }
+
+/// Settings that one variant alone reads.
+static OF_ONE: [(Setting, &str); 6] = [
+    (Setting::Whole(&MESH), "vertex"),
+    (Setting::Whole(&SIDE), "texture"),
+    (Setting::Whole(&ANISOTROPY), "texture"),
+    (Setting::Choice(&FILTER), "texture"),
+    (Setting::Real(&SUN_DISTANCE), "shortcut"),
+    (Setting::Whole(&inverse::CELLS), "inverse"),
+];
 
 fn with(mut defines: Vec<(&'static str, String)>, name: &'static str, value: u32) -> Vec<(&'static str, String)> {
     defines.push((name, value.to_string()));

@@ -14,7 +14,7 @@
 use super::{Column, Emission, Measure, Photons, TRACER, Taker, Tracing, photons, sides, sized};
 use crate::{
     gpu::{BufferId, Lifetime, PassBuilder, Plan, Row},
-    passes::PlanError,
+    passes::{PlanError, refused},
     settings::Settings,
 };
 
@@ -72,9 +72,6 @@ impl Blocks {
         layers: Option<u32>,
         levels: u32,
     ) -> Result<Self, PlanError> {
-        let refused = |what: String, reason: &str, remedy: &str| {
-            Err(PlanError::Refused { what, reason: reason.into(), remedy: remedy.into() })
-        };
         let tracer = settings.choice(&TRACER);
         if tracer != "bvh" {
             let what = format!("emission in blocks with light.tracer={tracer}");
@@ -82,11 +79,7 @@ impl Blocks {
         }
         if layers.is_some() {
             let reason = "a sample leaves several photons, and which of its neighbours' each lies beside is not known";
-            return refused(
-                "emission in blocks in class all:N".into(),
-                reason,
-                "set light.paths to a class of one path",
-            );
+            return refused("emission in blocks in class all:N", reason, "set light.paths to a class of one path");
         }
         let sides = sides(emissions);
         let most = along(sides.first().copied().unwrap_or(1), levels).pow(2);

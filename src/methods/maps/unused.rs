@@ -1,7 +1,10 @@
 //! What is set and would do nothing, or not what it says: refused with the reason.
 
 use super::{Axes, CULL, RASTER_FROM, SPLAT_SIZE, large, splats};
-use crate::{passes::PlanError, settings::Settings};
+use crate::{
+    passes::{PlanError, refused},
+    settings::Settings,
+};
 
 /// # Errors
 /// Settings that these axes have no use for.
@@ -11,7 +14,7 @@ pub fn check(settings: &Settings, axes: Axes<'_>) -> Result<(), PlanError> {
     if settings.choice(&CULL) == "geometry" && traverse == "fetch" && drawn_otherwise {
         return refused(
             format!("maps.cull=geometry with maps.splat={splat}"),
-            "the geometry shader hands on no count and no shape of a splat".into(),
+            "the geometry shader hands on no count and no shape of a splat",
             "set maps.cull=clip",
         );
     }
@@ -27,7 +30,7 @@ pub fn check(settings: &Settings, axes: Axes<'_>) -> Result<(), PlanError> {
         };
         return refused(
             format!("maps.raster_from={from} with {what}"),
-            reason.into(),
+            reason,
             "do not set maps.raster_from, or set maps.splat=varying",
         );
     }
@@ -43,10 +46,6 @@ pub fn check(settings: &Settings, axes: Axes<'_>) -> Result<(), PlanError> {
         );
     }
     Ok(())
-}
-
-fn refused(what: String, reason: String, remedy: &str) -> Result<(), PlanError> {
-    Err(PlanError::Refused { what, reason, remedy: remedy.into() })
 }
 
 #[cfg(test)]
